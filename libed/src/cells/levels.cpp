@@ -9,39 +9,47 @@
 namespace ed::internal {
 namespace {
 
-struct Members {
-  int number = 0;
-  double extent = 0;
-};
+/// Ratio of the largest to the least extent of a class.
+constexpr double kRatio = 2.5;
 
 }  // namespace
 
-CellLevels::CellLevels(std::span<const double> extents, double box, double least_scale,
-                       const std::optional<geom::InstructionSet>& batches) {
+std::vector<int> size_classes(std::span<const double> extents) {
   const double largest = *std::max_element(extents.begin(), extents.end());
-  // Bodies of a ratio that rounds to the bound of a class may be in either: that changes only what is searched.
+  // Extents of a ratio that rounds to the bound of a class may be in either: that changes only what is searched.
   const auto below_largest = [&](double extent) {
     return static_cast<int>(std::floor(std::log(largest / extent) / std::log(kRatio)));
   };
-  std::map<int, Members, std::greater<>> members;
-  for (const double extent : extents) {
-    Members& m = members[below_largest(extent)];
-    ++m.number;
-    m.extent = std::max(m.extent, extent);
+  std::map<int, int, std::greater<>> numbers;
+  for (const double extent : extents) numbers[below_largest(extent)] = 0;
+  int next = 0;
+  for (auto& [level, number] : numbers) number = next++;
+  std::vector<int> classes;
+  classes.reserve(extents.size());
+  for (const double extent : extents) classes.push_back(numbers[below_largest(extent)]);
+  return classes;
+}
+
+CellLevels::CellLevels(std::span<const double> extents, double box, double least_scale,
+                       const std::optional<geom::InstructionSet>& batches)
+    : class_of_(size_classes(extents)) {
+  const auto classes = static_cast<std::size_t>(*std::max_element(class_of_.begin(), class_of_.end())) + 1;
+  std::vector<int> members(classes, 0);
+  std::vector<double> largest(classes, 0);
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    const auto c = static_cast<std::size_t>(class_of_[i]);
+    ++members[c];
+    largest[c] = std::max(largest[c], extents[i]);
   }
   const int number = static_cast<int>(extents.size());
   int smaller = 0;
-  std::map<int, int> index;
-  for (const auto& [level, m] : members) {
-    const double reach = 2 * m.extent / least_scale;
-    index[level] = static_cast<int>(classes_.size());
-    classes_.push_back({m.extent, CellGrid(number, box, reach, batches, m.number), std::nullopt});
-    smaller += m.number;
-    if (smaller > m.number) classes_.back().with_smaller.emplace(number, box, reach, batches, smaller);
+  classes_.reserve(classes);
+  for (std::size_t c = 0; c < classes; ++c) {
+    const double reach = 2 * largest[c] / least_scale;
+    classes_.push_back({largest[c], CellGrid(number, box, reach, batches, members[c]), std::nullopt});
+    smaller += members[c];
+    if (c > 0) classes_.back().with_smaller.emplace(number, box, reach, batches, smaller);
   }
-  if (classes_.size() == 1) return;
-  class_of_.reserve(extents.size());
-  for (const double extent : extents) class_of_.push_back(index[below_largest(extent)]);
 }
 
 void CellLevels::use(geom::InstructionSet set) {

@@ -15,14 +15,18 @@
 
 namespace ed::internal {
 
+/// Returns the class of each extent: the largest class has extents from 0.4 of the largest one on, the class before it
+/// from 0.4 of that, and so on. The class of the smallest extents is 0; there are no empty classes.
+std::vector<int> size_classes(std::span<const double> extents);
+
 /// Linked cells for bodies of any sizes: in one grid, made for the largest, a small body would have thousands of others
 /// within reach.
 ///
 /// The extent of a body is how far it reaches: two bodies may have to know about each other while they are within the
-/// sum of their extents. A class holds the bodies from 0.4 of an extent to that extent. A grid of each class has its
-/// bodies alone, a second grid those of the classes before it too. A body looks for its own class and smaller ones in
-/// the second grid of its class, and for larger ones in the first grid of each larger class, so that no search reaches
-/// farther than the larger of two bodies makes necessary. Where all are of one class there is one grid.
+/// sum of their extents. A grid of each class of extents has its bodies alone, a second grid those of the classes before
+/// it too. A body looks for its own class and smaller ones in the second grid of its class, and for larger ones in the
+/// first grid of each larger class, so that no search reaches farther than the larger of two bodies makes necessary.
+/// Where all are of one class there is one grid.
 class CellLevels {
  public:
   /// Constructs empty grids for bodies of these extents. `least_scale`: factor by which the box may be scaled while
@@ -56,8 +60,6 @@ class CellLevels {
 
   /// Returns the number of classes that have bodies.
   int classes() const { return static_cast<int>(classes_.size()); }
-  /// Returns the number of a body's class; that of the smallest bodies is 0.
-  int class_of(int i) const { return class_of_.empty() ? 0 : class_of_[static_cast<std::size_t>(i)]; }
 
   /// Archives the cells of all grids; read into grids of the same bodies.
   template <class Archive, class Self>
@@ -66,13 +68,10 @@ class CellLevels {
       archive(c.alone);
       if (c.with_smaller) archive(*c.with_smaller);
     }
-    expect(archive, self.is_sorted(), "the cells hold bodies of other sizes");
+    if constexpr (Archive::kReads) expect(archive, self.is_sorted(), "the cells hold bodies of other sizes");
   }
 
  private:
-  /// Ratio of the largest to the least extent of a class.
-  static constexpr double kRatio = 2.5;
-
   struct Class {
     double extent;                         ///< largest of its bodies
     CellGrid alone;                        ///< bodies of the class
@@ -82,6 +81,7 @@ class CellLevels {
   /// Returns whether each grid holds the bodies of its classes, where it holds all that it should.
   bool is_sorted() const;
 
+  int class_of(int i) const { return class_of_[static_cast<std::size_t>(i)]; }
   template <class Visit>
   void for_each_grid(int i, Visit&& visit) const {
     const auto own = static_cast<std::size_t>(class_of(i));
@@ -93,7 +93,7 @@ class CellLevels {
   }
 
   std::vector<Class> classes_;  ///< the smallest bodies first
-  std::vector<int> class_of_;   ///< class of each body; empty: there is one class
+  std::vector<int> class_of_;   ///< class of each body
 };
 
 }  // namespace ed::internal

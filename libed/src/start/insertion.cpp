@@ -42,14 +42,6 @@ System empty_box(const std::vector<Component>& components, double packing_fracti
   return system;
 }
 
-std::vector<int> size_classes(const std::vector<double>& radii) {
-  const CellLevels levels(radii, 1);
-  std::vector<int> classes;
-  classes.reserve(radii.size());
-  for (int i = 0; i < static_cast<int>(radii.size()); ++i) classes.push_back(levels.class_of(i));
-  return classes;
-}
-
 std::size_t at(int i) {
   return static_cast<std::size_t>(i);
 }
@@ -71,7 +63,8 @@ double dilute_packing(const std::vector<Component>& components) {
 }
 
 bool has_size_classes(const System& system) {
-  return CellLevels(bounding_radii(system), 1).classes() > 1;
+  const std::vector<int> classes = size_classes(bounding_radii(system));
+  return *std::max_element(classes.begin(), classes.end()) > 0;
 }
 
 Insertion::Insertion(const std::vector<Component>& components, const StartOptions& options)

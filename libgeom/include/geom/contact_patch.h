@@ -149,9 +149,8 @@ GEOM_EXPORT ContactPatch contact_patch(const PatchBody& a, const PatchBody& b, c
 /// Boxes, polyhedra and half-spaces, beside each other: exact, the outline to 1e-13 of the size, and 1e-13 of it
 /// divided by the sine of the angle between two faces where they cut each other. All others: the polygon contains the
 /// patch, and its corners are not further outside than `tolerance` times its diameter; `error` is a bound of the
-/// distance itself, which is larger in a few of a thousand patches, where rays along steep surfaces find nothing. A
-/// face that is tilted by a small angle is the whole patch as soon as `within` spans it, so that resting bodies do not
-/// rock.
+/// distance itself. A face that is tilted by a small angle is the whole patch as soon as `within` spans it, so that
+/// resting bodies do not rock.
 ///
 /// Polygons narrower than 1e-9 of the extent of what both bodies' shadows have in common, for curved surfaces than
 /// three times the tolerance of their length, are segments; segments shorter than 1e-9 of it, 1e-6 for curved ones,

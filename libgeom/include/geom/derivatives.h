@@ -83,7 +83,7 @@ struct ContactBody {
   double curvature_radius = 0;       ///< lower bound of all radii of curvature, ball included
   std::optional<CoreView> core;      ///< a CoreShape
   const HalfSpace* plane = nullptr;  ///< a half-space
-  const void* shape = nullptr;       ///< any other shape, for the two functions
+  const void* shape = nullptr;       ///< shape of another kind, argument of the two functions
   Support (*support)(const void*, const Eigen::Vector3d&) = nullptr;
   Eigen::Matrix3d (*hessian)(const void*, const Eigen::Vector3d&) = nullptr;
 };

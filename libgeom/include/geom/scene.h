@@ -178,7 +178,7 @@ class GEOM_EXPORT Scene {
   /// Returns the shape of a body; it may share memory with the scene's.
   std::variant<Shape, AnyConvex> shape(BodyId body) const;
   Filter filter(BodyId body) const;     ///< filter of a body
-  std::vector<BodyId> bodies() const;   ///< all handles, in ascending order
+  std::vector<BodyId> bodies() const;   ///< handles of all bodies, in ascending order
   const SceneOptions& options() const;  ///< options that the scene was constructed with
 
   /// Finds every pair of bodies, images included, whose distance is at most `cutoff`, and every pair that may be and

@@ -14,9 +14,8 @@ namespace {
 /// Largest number of cuts, and of those for each face and side of a polytope: a safeguard, as each one leaves out a
 /// part of the plane for good.
 constexpr std::size_t kMostCuts = 2000, kMostCutsOfEach = 8;
-/// Uncertainties of the end of the patch on the way to a corner, of its distance from the corner: a smaller one is
-/// tried where a larger one does not tell how to cut the corner off.
-constexpr double kGoodEnds[] = {0.2, 0.02, 1e-3, 1e-5};
+/// Uncertainty of the end of the patch on the way to a corner, of its distance from the corner.
+constexpr double kGoodEnd = 0.2;
 /// Largest number of times that corners are judged anew.
 constexpr int kMostJudgements = 20;
 /// Largest number of steps to the end of the patch on a way.
@@ -55,31 +54,13 @@ Polygon Outline::find() {
     if (is_exact_) break;
     // Corners were judged by the diameter that the polygon had then.
     const double now = diameter_of(polygon);
-    judge(polygon, options_.tolerance * now);
+    error_ = 0;
+    for (const Corner& corner : polygon) error_ = std::max(error_, corner.outside);
     if (error_ <= options_.tolerance * now || now <= rounding_ || ++rounds == kMostJudgements) break;
     diameter = now;
     for (Corner& corner : polygon) corner.is_done = corner.outside <= options_.tolerance * now;
-    find_middle();
   }
   return polygon;
-}
-
-void Outline::judge(Polygon& polygon, double tolerance) {
-  if (inner_) {
-    const auto angle = [&](const Vector2d& x) { return std::atan2(x.y() - inner_->y(), x.x() - inner_->x()); };
-    std::sort(inside_.begin(), inside_.end(),
-              [&](const Vector2d& x, const Vector2d& y) { return angle(x) < angle(y); });
-  }
-  error_ = 0;
-  for (Corner& corner : polygon) {
-    if (corner.outside > tolerance) {
-      for (std::size_t k = 0; k < inside_.size(); ++k) {
-        const Vector2d& next = inside_[(k + 1) % inside_.size()];
-        corner.outside = std::min(corner.outside, (closest_on(inside_[k], next, corner.place) - corner.place).norm());
-      }
-    }
-    error_ = std::max(error_, corner.outside);
-  }
 }
 
 std::optional<Outline::Heights> Outline::heights_at(const Vector2d& place) const {
@@ -156,17 +137,6 @@ bool Outline::find_inner(const Polygon& polygon) {
   return false;
 }
 
-void Outline::find_middle() {
-  if (inside_.empty()) return;
-  Vector2d sum = Vector2d::Zero();
-  for (const Vector2d& x : inside_) sum += x;
-  const Vector2d middle = sum / static_cast<double>(inside_.size());
-  const double excess = excess_at(middle).value;
-  if (!(excess <= 0)) return;
-  inner_ = middle;
-  inner_excess_ = excess;
-}
-
 /// Place of a corner on the way from a place of the patch (0) to it (1), between two bounds.
 struct Outline::Ending {
   double low = 0, high = 1;
@@ -174,14 +144,14 @@ struct Outline::Ending {
   Excess excess;                      ///< excess there
 };
 
-Outline::Ending Outline::ending(const Vector2d& x, const Excess& at_corner, double tolerance, double good) const {
+Outline::Ending Outline::ending(const Vector2d& x, const Excess& at_corner, double tolerance) const {
   const Vector2d way = x - *inner_;
   const double share = tolerance / way.norm();
   Ending end{0, 1, x, at_corner};
   double from = 0, excess_from = inner_excess_, beyond = 1;
   for (int step = 0; step < kMostSteps; ++step) {
     // A corner that is near needs no better end, one that is far away only a good one.
-    if (1 - end.low <= share || end.high - end.low <= std::max(0.1 * share, good * (1 - end.high))) break;
+    if (1 - end.low <= share || end.high - end.low <= std::max(0.1 * share, kGoodEnd * (1 - end.high))) break;
     const double t = 0.5 * (end.low + end.high);
     const Vector2d place = *inner_ + t * way;
     const Excess excess = excess_at(place);
@@ -218,26 +188,17 @@ bool Outline::treat_smooth(Polygon& polygon, std::size_t k, double tolerance, co
   const Vector2d x = polygon[k].place;
   polygon[k].is_done = true;
   if (at_corner.value <= 0) return true;
-  double outside = 0;
-  for (const double good : kGoodEnds) {
-    const Ending end = ending(x, at_corner, tolerance, good);
-    outside = (1 - end.low) * (x - *inner_).norm();
-    inside_.push_back(*inner_ + end.low * (x - *inner_));
-    if (outside <= tolerance) break;
-    const std::optional<Line> line = tangent_at(end);
+  const Ending end = ending(x, at_corner, tolerance);
+  polygon[k].outside = (1 - end.low) * (x - *inner_).norm();
+  if (polygon[k].outside <= tolerance) return true;
+  // Where two sides of the patch meet at a small angle, a corner that is near to both is far from where they meet: what
+  // bounds the patch at the corner itself leaves it out.
+  for (const Ending& at : {end, Ending{0, 1, x, at_corner}}) {
+    const std::optional<Line> line = tangent_at(at);
     if (line && line->normal.dot(x) > line->reach + rounding_) {
       return cut(polygon, line->normal, line->reach, 0, rounding_);
     }
-    // The way may be nearly along the outline: the patch is then nearer than its end on the way.
-    const auto is_near = [&](const std::optional<Line>& l) {
-      return l && excess_at(x - tolerance * l->normal).value <= 0;
-    };
-    if (is_near(line) || is_near(a_.beyond(x)) || is_near(b_.beyond(x))) {
-      outside = tolerance;
-      break;
-    }
   }
-  polygon[k].outside = outside;
   return true;
 }
 

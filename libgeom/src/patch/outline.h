@@ -7,7 +7,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <vector>
 
 namespace geom::patch {
 
@@ -54,20 +53,14 @@ class Outline {
   /// Looks for a place of the patch: that of the witness points, or the middle of the polygon. Returns whether one is
   /// known.
   bool find_inner(const Polygon& polygon);
-  /// Replaces the known place of the patch by one that is further inside: from a place at the outline, ways may be
-  /// along that.
-  void find_middle();
   struct Ending;
   /// Returns where the patch ends on the way from a place in it to a corner, as well as a cut needs.
-  Ending ending(const Vector2d& x, const Excess& at_corner, double tolerance, double good) const;
+  Ending ending(const Vector2d& x, const Excess& at_corner, double tolerance) const;
   /// Returns the tangent of the patch near its end, or the line that bounds a shadow there.
   std::optional<Line> tangent_at(const Ending& end) const;
   /// Cuts along the tangent at the end of the patch on the way from a place in it to a corner, unless the corner is
   /// near that.
   bool treat_smooth(Polygon& polygon, std::size_t k, double tolerance, const Excess& at_corner);
-  /// Sets the error to the greatest distance of a corner from the patch. Where one is more than `tolerance` (length)
-  /// outside along the way inwards, what is between known places of the patch may be nearer.
-  void judge(Polygon& polygon, double tolerance);
   /// Cuts along the tangent over a corner that is in both shadows.
   bool treat_gap(Polygon& polygon, std::size_t k, double diameter);
   std::optional<Heights> heights_at(const Vector2d& place) const;
@@ -81,7 +74,6 @@ class Outline {
   double extent_ = 0;
   std::optional<Vector2d> inner_;  ///< place of the patch
   double inner_excess_ = 0;
-  std::vector<Vector2d> inside_;  ///< places of the patch near its outline
 };
 
 }  // namespace geom::patch

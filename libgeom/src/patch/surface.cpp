@@ -213,22 +213,25 @@ std::optional<Line> Surface::beyond_smooth(const Vector2d& x) const {
   Vector2d direction = x - middle_;
   if (direction.isZero(0)) return std::nullopt;
   Vector2d best = middle_;
+  std::optional<Line> line;  // that with x furthest beyond it
+  double most = tolerance_;
   for (int step = 0; step < kShadowSteps; ++step) {
     direction.normalize();
     const Vector2d s = support(direction);
     const double excess = direction.dot(x - s);
-    // A line at half of the distance or more cuts enough.
-    if (excess > tolerance_ && excess > 0.5 * (x - best).norm()) return Line{direction, direction.dot(s), 1, false};
-    const Vector2d next = closest_on(best, s, x);
-    if ((next - best).norm() <= 1e-3 * tolerance_) {
-      if (excess > tolerance_) return Line{direction, direction.dot(s), 1, false};
-      return std::nullopt;
+    if (excess > most) {
+      most = excess;
+      line = Line{direction, direction.dot(s), 1, false};
     }
+    // A line at half of the distance or more cuts enough.
+    if (line && most > 0.5 * (x - best).norm()) break;
+    const Vector2d next = closest_on(best, s, x);
+    if ((next - best).norm() <= 1e-3 * tolerance_) break;
     best = next;
     direction = x - best;
-    if (direction.norm() <= tolerance_) return std::nullopt;
+    if (direction.norm() <= tolerance_) break;
   }
-  return std::nullopt;
+  return line;
 }
 
 std::optional<Tangent> Surface::at(const Vector2d& x) const {

@@ -38,7 +38,7 @@ struct MotionScales {
 /// Rotation about an axis and translation along it, both uniform. World frame.
 struct Screw {
   geom::Pose pose;                                  ///< pose at `time`
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< any point of the axis
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< point of the axis
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< direction of the axis; any length but 0
   double angular_speed = 0;                         ///< radian per time, about the axis
   double speed = 0;                                 ///< length per time, along the axis

@@ -3,8 +3,8 @@
 /// The pair gap of two rods (uniaxial_gap.h defines pair gaps). The best normal has a closed form.
 
 #include "contact/curvature_steps.h"
-#include "contact/least_step.h"
 #include "contact/pair_gap_base.h"
+#include "contact/rods/choices.h"
 #include "contact/rods/pair.h"
 #include "contact/rods/rod.h"
 #include "contact/separation.h"
@@ -134,29 +134,18 @@ class RodGap : private PairGapBase<Rod, AxisMotion> {
   }
 
   double least_step(const State& s, const Evaluation& e, const Vector& n, bool touching, double tau) const {
-    const double unit = size() / speed_;
-    if (tau > kShortStep * unit) return tau;
-    return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
-      return any_choice(s, e, n, 1, [&](const Turn& choice) {
-        // g of bodies that touch is not known: it may fall by what rounding hides.
-        const double hidden = s.rounding.gap + trial * choice.hidden_rate();
-        return choice.stays_above(touching ? -hidden : s.rounding.gap, trial);
-      });
-    });
+    return least_clear_step(size() / speed_, s.rounding.gap, touching, tau,
+                            [&](const auto& has) { return any_choice(s, e, n, 1, has); });
   }
   bool worth_refining(double /*gp*/, double spread) const { return spread <= kTangentAgreement * (size() / speed_); }
 
   /// Whether the distance, 0 now, certainly was positive all the time `span` before: the same parabolas hold backwards
-  /// in time, from g = 0 on. The rate does not show over times as short as the span may be: longer ones include it.
+  /// in time, from g = 0 on.
   bool falls_since(const State& s, const Evaluation& e, const Vector& n, double rate, double span) const {
     if (!(rate < -kResting * speed_)) return false;
     if (!(span > 0)) return true;
-    const double unit = size() / speed_;
-    constexpr std::array<double, 4> kLonger{0.0, 1e-9, 1e-6, 1e-4};
-    return std::any_of(kLonger.begin(), kLonger.end(), [&](double longer) {
-      const double reach = larger(span, longer * unit);
-      return any_choice(s, e, n, -1, [&](const Turn& choice) { return choice.stays_above(s.rounding.gap, reach); });
-    });
+    return is_clear_for(span, size() / speed_, s.rounding.gap,
+                        [&](const auto& has) { return any_choice(s, e, n, -1, has); });
   }
 
   Vector cold_normal(const State& s) const {

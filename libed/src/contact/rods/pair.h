@@ -24,8 +24,8 @@
 /// is the other choice.
 
 #include "base/select.h"
-#include "contact/first_root.h"
 #include "contact/parabola_steps.h"
+#include "contact/rods/parabolas.h"
 #include "contact/rounding.h"
 
 #include <cmath>
@@ -186,21 +186,24 @@ struct RodPairOf : RodSpin<Vector, kSpin> {
 
 /// The four parabolas for a normal n that turns at the rate dn.
 template <class Real, class Vector, bool kSpin>
-class RodTurnOf {
+class RodTurnOf : public ParabolasOf<RodTurnOf<Real, Vector, kSpin>, Real> {
+  using Base = ParabolasOf<RodTurnOf, Real>;
+  friend Base;
+
  public:
   /// `direction`: 1, or -1 backwards in time, where velocities change their signs and accelerations do not. `size`:
   /// sum of the bounding radii. `share`: share of K that is taken; tests take less than 1, to see that contacts are
   /// missed then.
   [[gnu::always_inline]] RodTurnOf(const RodPairOf<Real, Vector, kSpin>& rods, const Vector& n, const Vector& dn,
                                    const RoundingOf<Real>& rounding, Real size, double direction = 1, double share = 1)
-      : share_(share), hidden_gap_(rounding.gap) {
+      : Base(rounding.gap), share_(share) {
     using std::sqrt;
     const Real W2 = dn.squaredNorm();
     W_ = sqrt(W2);
     speed_ = sqrt(rods.v.squaredNorm());
     distance_ = sqrt(rods.r.squaredNorm());
     // dn is a choice, made across n but for rounding; r and the axes are known as they are for the gap.
-    hidden_rate_ = rounding.rate + W_ * (rounding.gap + (64 * kRoundoff) * size);
+    this->hidden_rate_ = rounding.rate + W_ * (rounding.gap + (64 * kRoundoff) * size);
     const Real both_a = W_ + rods.rate_a;
     const Real both_b = W_ + rods.rate_b;
     const Real second_a = rods.a * (both_a * both_a);
@@ -236,32 +239,6 @@ class RodTurnOf {
     }
   }
 
-  Real hidden_rate() const { return hidden_rate_; }  ///< bound of what rounding hides of the rate
-
-  /// Returns a time, at most `reach`, up to which there is certainly no contact. `lift`: what is added to g, which may
-  /// be below 0 by rounding if the bodies touch.
-  [[gnu::always_inline]] Real step(Real reach, Real lift) const {
-    Real tau = reach;
-    each(reach, [&](Real value, Real slope, Real K) {
-      const Real least = larger(Real(0.0), (value + lift) - hidden_gap_);
-      const Real least_slope = slope - hidden_rate_;
-      // A concave function that is positive at both ends has no root between.
-      const auto stays = least + reach * (least_slope - 0.5 * larger(Real(0.0), K) * reach) > 0;
-      if (!all(stays)) tau = select(stays, tau, smaller(tau, first_root(least, least_slope, K)));
-    });
-    return tau;
-  }
-
-  /// Returns whether the gap is certainly above `least` a time tau later, and at no time before below the smaller of
-  /// that and its value now.
-  [[gnu::always_inline]] bool stays_above(Real least, Real tau) const {
-    bool above = true;
-    each(tau, [&](Real value, Real slope, Real K) {
-      above = above && value + tau * (slope - hidden_rate_) - (0.5 * tau * tau) * larger(Real(0.0), K) > least;
-    });
-    return above;
-  }
-
  private:
   /// Calls f(value, rate, K) for each parabola over [0, reach].
   template <class F>
@@ -275,7 +252,6 @@ class RodTurnOf {
   }
 
   double share_;
-  Real hidden_gap_, hidden_rate_;
   Real W_;
   Real distance_, speed_;               ///< |r| and |v|
   Real second_, third_;                 ///< bounds of the second and third derivatives of both rods' heights

@@ -3,8 +3,8 @@
 /// The pair gap of an ellipsoid of revolution, A, and a rod, B (uniaxial_gap.h defines pair gaps).
 
 #include "contact/curvature_steps.h"
-#include "contact/least_step.h"
 #include "contact/pair_gap_base.h"
+#include "contact/rods/choices.h"
 #include "contact/rods/rod.h"
 #include "contact/rods/spheroid_pair.h"
 #include "contact/separation.h"
@@ -155,15 +155,8 @@ class MixedGap {
   }
 
   double least_step(const State& s, const Evaluation& e, const Vector& n, bool touching, double tau) const {
-    const double unit = size() / speed_;
-    if (tau > kShortStep * unit) return tau;
-    return longest_clear_step(touching ? kTouching * unit : tau, unit, [&](double trial) {
-      return any_choice(s, e, n, 1, [&](const Turn& choice) {
-        // g of bodies that touch is not known: it may fall by what rounding hides.
-        const double hidden = s.rounding.gap + trial * choice.hidden_rate();
-        return choice.stays_above(touching ? -hidden : s.rounding.gap, trial);
-      });
-    });
+    return least_clear_step(size() / speed_, s.rounding.gap, touching, tau,
+                            [&](const auto& has) { return any_choice(s, e, n, 1, has); });
   }
   bool worth_refining(double /*gp*/, double spread) const { return spread <= kTangentAgreement * (size() / speed_); }
 
@@ -174,12 +167,8 @@ class MixedGap {
     if (!(span > 0)) return true;
     const Vector n = geom::kernel::step_on_sphere(last_n, last.step);
     const Evaluation e = evaluate(s, n);
-    const double unit = size() / speed_;
-    constexpr std::array<double, 4> kLonger{0.0, 1e-9, 1e-6, 1e-4};
-    return std::any_of(kLonger.begin(), kLonger.end(), [&](double longer) {
-      const double reach = larger(span, longer * unit);
-      return any_choice(s, e, n, -1, [&](const Turn& choice) { return choice.stays_above(s.rounding.gap, reach); });
-    });
+    return is_clear_for(span, size() / speed_, s.rounding.gap,
+                        [&](const auto& has) { return any_choice(s, e, n, -1, has); });
   }
 
   Vector cold_normal(const State& s) const { return mixed_cold_normal(s); }

@@ -22,8 +22,8 @@
 /// first root of the two parabolas with K >= -g_s''.
 
 #include "base/select.h"
-#include "contact/first_root.h"
 #include "contact/parabola_steps.h"
+#include "contact/rods/parabolas.h"
 #include "contact/rounding.h"
 
 #include <cmath>
@@ -197,7 +197,10 @@ struct MixedPairOf : MixedSpin<Vector, kSpin> {
 
 /// The two parabolas for a normal n that turns at the rate dn.
 template <class Real, class Vector, class Shape, bool kSpin>
-class MixedTurnOf {
+class MixedTurnOf : public ParabolasOf<MixedTurnOf<Real, Vector, Shape, kSpin>, Real> {
+  using Base = ParabolasOf<MixedTurnOf, Real>;
+  friend Base;
+
  public:
   using Pair = MixedPairOf<Real, Vector, Shape, kSpin>;
 
@@ -205,7 +208,7 @@ class MixedTurnOf {
   [[gnu::always_inline]] MixedTurnOf(const Pair& pair, const MixedSampleOf<Real>& at, const Vector& n, const Vector& dn,
                                      const RoundingOf<Real>& rounding, Real size, double direction = 1,
                                      double share = 1)
-      : shape_(pair.shape), x_(at.x_a), share_(share), hidden_gap_(rounding.gap) {
+      : Base(rounding.gap), shape_(pair.shape), x_(at.x_a), share_(share) {
     using std::sqrt;
     const Real W2 = dn.squaredNorm();
     W_ = sqrt(W2);
@@ -214,7 +217,7 @@ class MixedTurnOf {
     both_ = W_ + pair.rate_a;
     // dn is a choice, made across n but for rounding; r and the axes are known as they are for the gap. The lever
     // multiplies the rate of x_A as in the rate for n fixed, with W beside w.
-    hidden_rate_ =
+    this->hidden_rate_ =
         rounding.rate + W_ * (rounding.gap + (64 * kRoundoff) * size) + (71 * kRoundoff) * (shape_.turning_limit * W_);
     const Real both_b = W_ + pair.rate_b;
     second_rod_ = pair.l * (both_b * both_b);
@@ -239,31 +242,6 @@ class MixedTurnOf {
       slope_[k] = slope + s * dx_b;
       bend_[k] = -(bend + s * ddx_b);
     }
-  }
-
-  Real hidden_rate() const { return hidden_rate_; }  ///< bound of what rounding hides of the rate
-
-  /// Returns a time, at most `reach`, up to which there is certainly no contact. `lift`: see RodTurnOf.
-  [[gnu::always_inline]] Real step(Real reach, Real lift) const {
-    Real tau = reach;
-    each(reach, [&](Real value, Real slope, Real K) {
-      const Real least = larger(Real(0.0), (value + lift) - hidden_gap_);
-      const Real least_slope = slope - hidden_rate_;
-      // A concave function that is positive at both ends has no root between.
-      const auto stays = least + reach * (least_slope - 0.5 * larger(Real(0.0), K) * reach) > 0;
-      if (!all(stays)) tau = select(stays, tau, smaller(tau, first_root(least, least_slope, K)));
-    });
-    return tau;
-  }
-
-  /// Returns whether the gap is certainly above `least` a time tau later, and at no time before below the smaller of
-  /// that and its value now.
-  [[gnu::always_inline]] bool stays_above(Real least, Real tau) const {
-    bool above = true;
-    each(tau, [&](Real value, Real slope, Real K) {
-      above = above && value + tau * (slope - hidden_rate_) - (0.5 * tau * tau) * larger(Real(0.0), K) > least;
-    });
-    return above;
   }
 
   /// Returns an upper bound of h_A'' over [0, reach]. With Omega = W + w of A, x_A'' changes by Omega^3 reach at most,
@@ -321,7 +299,6 @@ class MixedTurnOf {
   const Shape& shape_;
   Real x_, dx_, ddx_;  ///< x_A and its derivatives
   double share_;
-  Real hidden_gap_, hidden_rate_;
   Real W_, both_;                       ///< W, and W + w of A
   Real distance_, speed_;               ///< |r| and |v|
   Real second_rod_, third_rod_;         ///< bounds of the second and third derivatives of l x_B

@@ -118,7 +118,7 @@ int draws() {
   return full_form() ? 10000 : geom_test::repetitions(300);
 }
 
-/// Each kind beside bodies of every kind.
+/// Kinds of bodies, beside bodies of every kind.
 class Kinds : public testing::TestWithParam<std::string> {};
 
 TEST_P(Kinds, HaveTheDifferencesApart) {

@@ -89,8 +89,8 @@ TEST(ContactPatch, OfTiltedRoundBodiesKeepsTheTolerance) {
     if (patch.error > 1.05 * options.tolerance * diameter) ++outside;
   }
   EXPECT_GT(polygons, repetitions(600) / 2);
-  // Bounds of the errors, not the errors: thin slivers have larger ones in some of a thousand.
-  EXPECT_LE(outside, 1 + polygons / 100);
+  // A corner over which rays find nothing is returned further inwards, which makes the diameter less.
+  EXPECT_LE(outside, 1);
 }
 
 /// Two faces are equally steep: neither is the flattest one.
