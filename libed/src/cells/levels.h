@@ -23,10 +23,10 @@ std::vector<int> size_classes(std::span<const double> extents);
 /// within reach.
 ///
 /// The extent of a body is how far it reaches: two bodies may have to know about each other while they are within the
-/// sum of their extents. A grid of each class of extents has its bodies alone, a second grid those of the classes before
-/// it too. A body looks for its own class and smaller ones in the second grid of its class, and for larger ones in the
-/// first grid of each larger class, so that no search reaches farther than the larger of two bodies makes necessary.
-/// Where all are of one class there is one grid.
+/// sum of their extents. A grid of each class of extents has its bodies alone, a second grid those of the classes
+/// before it too. A body looks for its own class and smaller ones in the second grid of its class, and for larger ones
+/// in the first grid of each larger class, so that no search reaches farther than the larger of two bodies makes
+/// necessary. Where all are of one class there is one grid.
 class CellLevels {
  public:
   /// Constructs empty grids for bodies of these extents. `least_scale`: factor by which the box may be scaled while
