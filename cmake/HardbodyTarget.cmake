@@ -1,6 +1,6 @@
 # Compile options that every target of this project shares.
 #
-# hardbody_target(<target> [BASELINE] [COLD]) applies them; BASELINE leaves HARDBODY_ARCH out, COLD takes -O2, for code
+# hardbody_target(<target> [BASELINE] [COLD]) applies them; BASELINE leaves HARDBODY_ARCH out, COLD takes -O1, for code
 # where no time is spent, which compiles a third faster. None of them is exported: a consumer compiles with its own
 # flags, which is safe because no object that inline functions share depends on -march (docs/decisions/017). With
 # HARDBODY_SANITIZE_FAST targets that are COMPILED_ONLY are not instrumented, and those that are NUMERICAL are optimised
@@ -36,7 +36,7 @@ function(hardbody_target target)
     -Woverloaded-virtual -Wold-style-cast
     $<$<BOOL:${HARDBODY_WERROR}>:-Werror>
     # RelWithDebInfo is -O2 by default; the kernels want -O3 there too.
-    $<$<CONFIG:Release,RelWithDebInfo>:$<IF:$<BOOL:${arg_COLD}>,-O2,-O3>>)
+    $<$<CONFIG:Release,RelWithDebInfo>:$<IF:$<BOOL:${arg_COLD}>,-O1,-O3>>)
   if(HARDBODY_ARCH AND NOT arg_BASELINE)
     target_compile_options(${target} PRIVATE -march=${HARDBODY_ARCH})
   endif()

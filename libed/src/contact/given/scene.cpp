@@ -1,5 +1,5 @@
 #include "contact/given/search.h"
-#include "motion/given/promises.h"
+#include "motion/given/point_bounds.h"
 
 #include <ed/given/scene.h>
 

@@ -1,6 +1,6 @@
 #include "contact/given/search.h"
 
-#include "motion/given/promises.h"
+#include "motion/given/point_bounds.h"
 
 #include <ed/tolerances.h>
 
@@ -23,7 +23,7 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Roundings of a gap, of the coordinates and of the way during a rounding of the time.
 constexpr double kGapRoundings = 16;
 /// Overlap, of the size, that no rounding explains once the bodies were apart.
-constexpr double kBrokenPromise = 1e-8;
+constexpr double kBrokenBounds = 1e-8;
 /// Largest ratio of the interval that bounds are about to the step that they allow.
 constexpr double kWindow = 8;
 /// Largest ratio of a step to what the last one was certain about.
@@ -89,7 +89,7 @@ class GivenSearch {
       }
       n_ = at_.normal;
       const double touching = touching_gap();
-      const double deepest = begins ? std::max(kOverlap * size_, touching) : kBrokenPromise * size_ + touching;
+      const double deepest = begins ? std::max(kOverlap * size_, touching) : kBrokenBounds * size_ + touching;
       if (at_.distance < -deepest) {
         if (begins) return ended(ContactStatus::overlapping);
         refuse_overlap();
@@ -120,10 +120,10 @@ class GivenSearch {
   /// Asks for the bounds over an interval from now.
   void ask(double duration) {
     const double until = duration < t_max_ - time_ ? time_ + duration : t_max_;
-    promise_a_ = a_.bounds(time_, until);
-    promise_b_ = b_.bounds(time_, until);
-    points_a_ = PointBounds(promise_a_, pair_.radius_a);
-    points_b_ = PointBounds(promise_b_, pair_.radius_b);
+    bounds_a_ = a_.bounds(time_, until);
+    bounds_b_ = b_.bounds(time_, until);
+    points_a_ = PointBounds(bounds_a_, pair_.radius_a);
+    points_b_ = PointBounds(bounds_b_, pair_.radius_b);
     bounds_ = {points_a_.speed + points_b_.speed, points_a_.acceleration + points_b_.acceleration};
     asked_ = until - time_;
     if (!std::isfinite(bounds_.first)) refuse_infinite_speeds(names_, time_, until);
@@ -147,8 +147,8 @@ class GivenSearch {
     const Pose X_A = X_A_, X_B = X_B_;
     const double from = time_;
     look(duration < t_max_ - from ? from + duration : t_max_);
-    check_promise(names_.a, "A", promise_a_, a_, from, X_A, X_A_);
-    check_promise(names_.b, "B", promise_b_, b_, from, X_B, X_B_);
+    check_bounds(names_.a, "A", bounds_a_, a_, from, X_A, X_A_);
+    check_bounds(names_.b, "B", bounds_b_, b_, from, X_B, X_B_);
     const double gap = n_.dot(X_B_.position() - X_A_.position()) - pair_.height_a(X_A_.rotation().transpose() * n_) -
                        pair_.height_b(X_B_.rotation().transpose() * -n_);
     return {at_.distance, gap, time_ - from, bounds_};
@@ -177,8 +177,8 @@ class GivenSearch {
   }
 
   /// Throws std::invalid_argument if a body has moved more than its bounds allow. `body`: its number in a scene, or -1.
-  void check_promise(std::int64_t body, const char* letter, const MotionBounds& bounds, const GivenMotion& motion,
-                     double from, const Pose& X, const Pose& Y) const {
+  void check_bounds(std::int64_t body, const char* letter, const MotionBounds& bounds, const GivenMotion& motion,
+                    double from, const Pose& X, const Pose& Y) const {
     MotionScales scales = motion.scales();
     scales.length += size_;
     std::string fault = broken_speed(bounds, from, X, time_, Y, scales);
@@ -288,7 +288,7 @@ class GivenSearch {
   Pose X_A_, X_B_;
   Vector3d n_ = Vector3d::Zero();
   geom::DistanceResult at_;
-  MotionBounds promise_a_, promise_b_;  ///< bounds over [time_, time_ + asked_]
+  MotionBounds bounds_a_, bounds_b_;  ///< bounds over [time_, time_ + asked_]
   PointBounds points_a_, points_b_;
   GapBounds bounds_;  ///< last bounds of the gap along a direction that stays
   double asked_ = 0;

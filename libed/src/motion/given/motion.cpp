@@ -1,5 +1,5 @@
 #include "motion/checks.h"
-#include "motion/given/promises.h"
+#include "motion/given/point_bounds.h"
 
 #include <ed/given/motion.h>
 

@@ -1,4 +1,4 @@
-#include "motion/given/promises.h"
+#include "motion/given/point_bounds.h"
 
 #include <algorithm>
 #include <cmath>
