@@ -194,8 +194,10 @@ void ask_scene(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
   switch (input.byte() % 6) {
     case 0: {
       std::vector<geom::ScenePair> pairs;
-      scene.pairs_within(input.byte() % 4 == 0 ? input.coordinate() : reach * input.fraction(), pairs,
-                         {.penetration = geom::Penetration::local});
+      double cutoff = input.byte() % 4 == 0 ? input.coordinate() : reach * input.fraction();
+      // Larger ones have millions of images within reach.
+      if (scene.options().lattice.vectors[0].any()) cutoff = std::min(cutoff, 2 * reach);
+      scene.pairs_within(cutoff, pairs, {.penetration = geom::Penetration::local});
       for (const geom::ScenePair& pair : pairs) {
         require(pair.i < pair.j && pair.image.allFinite(), "pairs are in order");
         if (is_answer(pair.result.status)) require(std::isfinite(pair.result.distance), "their distances are finite");
@@ -216,7 +218,7 @@ void ask_scene(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
     case 3: {
       std::vector<geom::SceneImage> found;
       // Larger ones overlap millions of images.
-      const double radius = std::min(input.length(), 16 * reach);
+      const double radius = std::min(input.length(), 4 * reach);
       scene.overlapping(geom::Sphere(radius), Pose::translation(input.vector()), found);
       break;
     }
