@@ -129,7 +129,21 @@ void ask_patch(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
   }
 }
 
-/// Small lattices have many images in reach.
+/// Returns whether a body has thousands of images within a few times `reach`, and up to 1e8.
+bool has_many_images(const geom::Lattice& lattice, double reach) {
+  double volume = 1;
+  for (std::size_t k = 0; k < 3; ++k) {
+    Vector3d v = lattice.vectors[k];
+    if (!v.any()) continue;
+    for (std::size_t m = 0; m < k; ++m) {  // the part across the ones before
+      const Vector3d& w = lattice.vectors[m];
+      if (w.any()) v -= v.dot(w) / w.squaredNorm() * w;
+    }
+    volume *= v.norm() / reach;
+  }
+  return !(volume > 0.1);
+}
+
 geom::SceneOptions scene_options(Input& input, double reach) {
   geom::SceneOptions options;
   if (input.byte() % 4 == 0) options.margin = input.coordinate();
@@ -140,12 +154,12 @@ geom::SceneOptions scene_options(Input& input, double reach) {
       options.lattice = geom::Lattice::cube(reach * (0.5 + input.length()));
       break;
     case 1:
-      if (!input.is_one_in(512)) break;  // they may be short
       for (Vector3d& v : options.lattice.vectors) v = input.vector();
       break;
     default:
       break;
   }
+  if (has_many_images(options.lattice, reach) && !input.is_one_in(8192)) options.lattice = {};
   return options;
 }
 
