@@ -120,7 +120,7 @@ OTHER_WORDS = {
     "packing_fraction": r"^number: a box of edge .* at this packing fraction is too small",
     "box": r"^positions\[\d\] is .* boxes of the origin",
     "factor": r"semi-axis [xyz] is",
-    "mass": r"^inertia is .* all mass at the bounding radius",
+    "mass": r"^inertia is .* (all mass at the bounding radius|mass within the body)",
     # Radii and symmetries are the object's, which its name stands for.
     "object": r"accepted: an object with a method support|^mine\.\w+ is missing"
     r"|^shape mine: (volume is .* bounding sphere$|symmetry_axis is .* changes the support height)",

@@ -237,9 +237,20 @@ def test_exceptions_in_starts_and_queries_are_raised_by_them(call):
         hb.Simulation(start(shape, 32)).run(collisions=100)
 
 
+@pytest.mark.parametrize("name", ["min_curvature_radius", "bounding_radius", "volume", "support_hessian", "support"])
+@pytest.mark.parametrize("error", [OSError, KeyboardInterrupt])
+def test_exceptions_of_properties_are_raised(name, error):
+    def fails(self):
+        raise error("mine")
+
+    shape = type("Failing", (Broken,), {name: property(fails)})()
+    with pytest.raises(error, match="^mine$"):
+        hb.CustomShape(shape)
+
+
 WRONG = [
     (TypeError, "tuple", 3.0),
-    (TypeError, "tuple", (1.0, 2.0, 3.0)),
+    (TypeError, r"has 3 entries; accepted: a tuple of the height", (1.0, 2.0, 3.0)),
     (TypeError, r"\[0\]", ("1", [0, 0, 1])),
     (ValueError, r"\[1\]", (1.0, [0, 0])),
     (ValueError, "height", (1.0, [0, 0, 0])),

@@ -109,8 +109,12 @@ def test_bad_input():
         hb.GivenMotion(3, (1, 0))
     with pytest.raises(ValueError, match="bounds"):
         hb.GivenMotion(along_x(abs), (-1, 0))
-    with pytest.raises((TypeError, ValueError), match="bounds"):
-        hb.GivenMotion(along_x(abs), (1, 0, 0))
+    for wrong in ((1, 0, 0), (1,), 3):
+        with pytest.raises(ValueError, match=r"^bounds has shape .*; accepted: 2 or 4 real numbers"):
+            hb.GivenMotion(along_x(abs), wrong)
+    with pytest.raises(ValueError, match=r"^GivenMotion\.spline: 3 times and 2 poses"):
+        hb.GivenMotion.spline([0, 1, 2], [hb.Pose(), hb.Pose()])
+    assert repr(rest) == f"<GivenMotion: at time 0 {hb.Pose()!r}>"
     with pytest.raises(ValueError, match="a scale is -1"):
         hb.GivenMotion(along_x(abs), (1, 0), scales=(-1, 0))
     with pytest.raises((TypeError, ValueError), match="scales"):
@@ -134,7 +138,7 @@ def test_bad_input():
             scene.first_contact(moving, 1)
     with pytest.raises(TypeError, match="accepted: Motion, GivenMotion"):
         scene.first_contact({0: 3}, 1)
-    with pytest.raises(ValueError, match="finite times in order"):
+    with pytest.raises(ValueError, match="end is 0; accepted: a time not before begin"):
         rest.check(1, 0)
     with pytest.raises(TypeError, match="pickled"):
         copy.copy(rest)

@@ -179,6 +179,17 @@ def test_help_of_classes_lists_their_fields(kind):
 
 
 @pytest.mark.skipif(not is_installed, reason="other extensions may have debug information")
+def test_subinterpreters_are_refused():
+    script = (
+        "import _xxsubinterpreters as s; i = s.create()\n"
+        "try:\n s.run_string(i, 'import hardbody')\n"
+        "except s.RunFailedError as error:\n print(error)"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "hardbody cannot be imported in a subinterpreter; accepted: the main interpreter" in done.stdout
+
+
 def test_size_of_the_extension():
     assert pathlib.Path(_core.__file__).stat().st_size < 15_000_000
 

@@ -76,6 +76,9 @@ def test_tables_are_arrays(run):
     late = msd[msd["t"] > 0.1]
     assert isinstance(late, hb.Table)
     assert late.units == msd.units
+    assert msd[["t", "msd"]].units == {"t": "l sqrt(m/kT)", "msd": "l^2"}
+    with pytest.raises(KeyError, match="no column 'nope'; there are: t, msd, msd_error"):
+        msd["nope"]
     assert msd[0]["t"] == msd["t"][0]
     slope = np.polyfit(np.log(msd["t"][:5]), np.log(msd["msd"][:5]), 1)[0]
     assert slope == pytest.approx(2, abs=0.05)  # ballistic
@@ -146,7 +149,7 @@ def test_html_of_a_run(run):
     assert len(shown) < 10_000
 
 
-def test_plot(run):
+def test_plot(run, tmp_path):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("agg")
     figure = run.plot()
@@ -164,6 +167,9 @@ def test_plot(run):
     assert len(run.plot("pressure", "velocity", "s_q").axes) == 3
     with pytest.raises(ValueError, match=r"'energy' is no plot of .*; accepted: msd, "):
         run.plot("energy")
+    (tmp_path / "config.toml").write_text("")
+    with pytest.raises(FileNotFoundError, match="has no curves to draw"):
+        hb.Run(tmp_path).plot()
 
 
 @pytest.mark.parametrize(
@@ -180,12 +186,21 @@ def test_missing_packages_are_named(run, monkeypatch, package, what):
 
     def without(name: str, *arguments: object) -> object:
         if name.split(".")[0] == package:
-            raise ImportError(name)
+            raise ModuleNotFoundError(name, name=package)
         return import_module(name)
 
     monkeypatch.setattr(importlib, "import_module", without)
     with pytest.raises(ImportError, match=f"needs the package {package}: pip install {package}$"):
         what(run)
+
+
+def test_packages_that_do_not_load_say_why(run, monkeypatch):
+    def broken(name):
+        raise ImportError("libgsd.so: cannot open")
+
+    monkeypatch.setattr(importlib, "import_module", broken)
+    with pytest.raises(ImportError, match=r"^libgsd\.so: cannot open$"):
+        run.trajectory()
 
 
 def test_relative_paths_outlive_the_working_directory(run, tmp_path, monkeypatch):

@@ -1,5 +1,7 @@
 """Scenes: answers against those of all pairs."""
 
+import copy
+import pickle
 import threading
 
 import numpy as np
@@ -103,15 +105,44 @@ def test_bodies_come_and_go(bodies):
     scene = bodies.scene()
     scene.remove(5)
     scene.remove([1, 2])
-    assert len(scene) == 57 and 5 not in scene and 6 in scene and "x" not in scene and -1 not in scene
+    assert (
+        len(scene) == 57
+        and 5 not in scene
+        and 6 in scene
+        and True not in scene
+        and "x" not in scene
+        and -1 not in scene
+    )
     assert scene.add(hb.Sphere(1), hb.Pose()) == 60
     assert scene.bodies.tolist() == [k for k in range(61) if k not in (1, 2, 5)]
     for call in (lambda: scene.move(5, hb.Pose()), lambda: scene.remove([7, 5]), lambda: scene.pose(5)):
         with pytest.raises(ValueError, match="body 5 has been removed"):
             call()
     assert 7 in scene  # nothing half-done
-    with pytest.raises(ValueError, match="body 99 is not in the scene"):
+    with pytest.raises(ValueError, match="body 99 has not been added; accepted: one of the scene's 58 bodies"):
         scene.distance(0, 99)
+
+
+def test_shapes_come_back(bodies):
+    class Ball:
+        bounding_radius = inscribed_radius = 0.5
+
+        def support(self, n):
+            length = np.linalg.norm(n)
+            return 0.5 * length, 0.5 * np.asarray(n) / length
+
+    scene, ball = hb.Scene(), Ball()
+    shapes = [hb.Ellipsoid([1, 2, 3]), hb.Box([1, 2, 3]), hb.CustomShape(ball)]
+    for shape in shapes:
+        scene.add(shape, hb.Pose())
+    assert [scene.shape(k) for k in range(2)] == shapes[:2]
+    assert scene.shape(2).object is ball
+    scene.remove(2)
+    with pytest.raises(ValueError, match="body 2 has been removed"):
+        scene.shape(2)
+    for duplicate in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(TypeError, match="^a Scene cannot be pickled .*; accepted: its shapes and poses"):
+            duplicate(scene)
 
 
 def test_filters(bodies):
@@ -227,7 +258,10 @@ def test_bad_scenes(bodies):
     for value, what in ((-1.0, "margin"), (np.nan, "margin"), ("x", "margin")):
         with pytest.raises((ValueError, TypeError), match=what):
             hb.Scene(margin=value)
-    for value in (-1.0, np.nan, [[1, 0, 0]], [[1, 0, 0], [2, 0, 0], [0, 0, 1]], "cube"):
+    for value in ([1, 0, 0], np.eye(2), [[1, 0, 0]], "cube"):
+        with pytest.raises((ValueError, TypeError), match=r"^lattice .*; accepted: the edge of a cube, or finite num"):
+            hb.Scene(lattice=value)
+    for value in (-1.0, np.nan, [[1, 0, 0], [2, 0, 0], [0, 0, 1]]):
         with pytest.raises((ValueError, TypeError), match="(?i)lattice"):
             hb.Scene(lattice=value)
     scene = bodies.scene()
@@ -243,7 +277,12 @@ def test_bad_scenes(bodies):
         (lambda: scene.nearest(hb.Sphere(1), hb.Pose(), within=-1), "within"),
         (lambda: scene.ray_cast([0, 0, 0], [0, 0, 0]), "direction"),
         (lambda: scene.ray_cast_many([[0, 0, 0]], [[0, 0, 0]]), "directions"),
-        (lambda: scene.distance(2, 2), "both handles"),
+        (lambda: scene.distance(2, 2), "j is 2; accepted: another body than i"),
+        (lambda: scene.first_contact({10**30: hb.Motion()}, 1), "moving: a key is an integer outside"),
+        (lambda: scene.first_contact({-1: hb.Motion()}, 1), "moving: a key is -1; accepted: an integer from 0"),
+        (lambda: scene.first_contact({True: hb.Motion()}, 1), "moving: a key is"),
+        (lambda: scene.first_contact({3: 3}, 1), r"moving\[3\] is 3; accepted: Motion, GivenMotion"),
+        (lambda: scene.first_contact(list(range(10**5)), 1), r"^moving is \[0, .{,200}; accepted: a dict"),
         (lambda: scene.remove(1.5), "bodies"),
     ):
         with pytest.raises((ValueError, TypeError), match=what):

@@ -36,6 +36,19 @@ def test_support(random):
         np.testing.assert_allclose(s, e.semi_axes**2 * n / np.linalg.norm(n * e.semi_axes), rtol=1e-14)
 
 
+@pytest.mark.parametrize("length", [1e-320, 1e-300, 1e-170, 1e170, 1e300])
+def test_support_in_directions_of_any_length(length):
+    n = np.array([0.6, 0, 0.8])
+    shapes = [hb.Sphere(1), hb.Ellipsoid([1, 1, 3]), hb.Capsule(2, 1), hb.Cylinder(2, 1), hb.Cone(2, 1)]
+    shapes += [hb.Box([1, 2, 3]), hb.Rounded(hb.Box([1, 2, 3]), 0.1), hb.Superellipsoid([1, 2, 3], 0.5, 0.7)]
+    for shape in shapes:
+        h, s = shape.support(length * n)
+        expected, point = shape.support(n)
+        tolerance = 1e-3 if length < 1e-310 else 1e-15  # the direction is rounded
+        assert h / length == pytest.approx(expected, rel=tolerance)
+        np.testing.assert_allclose(s, point, atol=4 * tolerance)
+
+
 def test_superellipsoid_of_exponents_one_is_the_ellipsoid():
     s, e = hb.Superellipsoid([1, 2, 3], 1, 1), hb.Ellipsoid([1, 2, 3])
     assert s.volume == pytest.approx(e.volume, rel=1e-12)

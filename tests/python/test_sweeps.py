@@ -328,7 +328,7 @@ def test_ctrl_c_and_again(sweep, tmp_path):
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
     said = process.communicate()[0]
-    assert said == f"{tmp_path / 'a'}: stopped by SIGINT: the same command continues\n"
+    assert said == f"{tmp_path / 'a'}: stopped by SIGINT: the same call continues\n"
     calls: list[float | None] = []
     again = hb.sweep(SWEEP, tmp_path / "a", jobs=2, progress=lambda text, done: calls.append(done))
     assert table_bytes(again) == table_bytes(sweep)

@@ -115,7 +115,8 @@ RunDirectory RunDirectory::create(const fs::path& path, Overwrite overwrite, con
                                   std::string_view config) {
   try {
     if (fs::exists(path) && !fs::is_directory(path)) {
-      throw InputError(fmt::format("{}: is not a directory; accepted: a new or empty directory", path.string()));
+      throw InputError(
+          fmt::format("{}: is not a directory; accepted: a new directory, or one without a run", path.string()));
     }
     std::string trace = trace_of_a_run(path);
     if (!trace.empty() && overwrite == Overwrite::refused) throw holds_a_run(path, trace);

@@ -268,8 +268,11 @@ def report(
     paths: a run directory, several of them to be shown side by side, or the directory of a sweep. out: HTML file;
     default: report.html in the directory.
     """
-    given = [paths] if isinstance(paths, str) or not isinstance(paths, Sequence) else list(paths)
-    directories = [path_text(path, "paths") for path in given]
+    if isinstance(paths, (str, PathLike)):
+        paths = [paths]
+    if not isinstance(paths, Sequence):
+        raise TypeError(f"paths is {shown(paths)}; accepted: a str or path, or a list of them")
+    directories = [path_text(path, f"paths[{k}]" if len(paths) > 1 else "paths") for k, path in enumerate(paths)]
     if not directories:
         raise ValueError("paths is empty; accepted: run directories, or that of a sweep")
     if out is None and len(directories) > 1:

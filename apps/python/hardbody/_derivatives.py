@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hardbody import _core
 from hardbody._arrays import Distances, _Outcomes, distance_many
+from hardbody._calls import flag
 from hardbody._typing import AnyBody, Reals, RotationLike, Shapes
 from hardbody._values import Comparable
 
@@ -113,8 +114,7 @@ def distance_derivatives_many(
     second: whether Hessians and Jacobians are wanted, 2 kB a pair; else gradients alone. Other arguments, frames, units
     and exceptions are those of distance_many; accuracy is that of distance_derivatives. The GIL is released.
     """
-    if not isinstance(second, (bool, np.bool_)):
-        raise TypeError(f"second is {second!r}; accepted: True or False")
+    second = flag(second, "second")
     at = distance_many(
         shapes,
         positions,

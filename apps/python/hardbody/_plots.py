@@ -25,10 +25,12 @@ def plot_curves(curves: Mapping[str, Table], names: Sequence[str], title: str) -
             raise TypeError(f"names: {shown(name)} is no plot of {title}; accepted: {', '.join(known)}")
         if name not in known:
             raise ValueError(f"names: {shown(name)} is no plot of {title}; accepted: {', '.join(known)}")
-    chosen = [plots[name] for name in names or [name for name in _USUAL if name in known]]
+    if not known:
+        raise FileNotFoundError(f"{title} has no curves to draw; accepted: a run whose results are written")
+    chosen = [plots[name] for name in names or [name for name in _USUAL if name in known] or known[:1]]
     pyplot = required("matplotlib.pyplot", "matplotlib", "plot")
-    columns = min(2, len(chosen)) or 1
-    rows = math.ceil(len(chosen) / columns) or 1
+    columns = min(2, len(chosen))
+    rows = math.ceil(len(chosen) / columns)
     figure, axes = pyplot.subplots(
         rows, columns, figsize=(5.5 * columns, 4 * rows), squeeze=False, layout="constrained"
     )

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hardbody import _core
 from hardbody._arrays import _DISTANCE_STATUS, ClosestPoints, RayHits, _Outcomes
-from hardbody._typing import BodyShape, Bools, Reals, RotationLike, Shapes
+from hardbody._toml import shown
+from hardbody._typing import BodyShape, Bools, Reals, RotationLike, Shape, Shapes
 from hardbody._values import Comparable
 
 Handles = NDArray[np.int64]
@@ -191,8 +192,9 @@ class Scene:
     vectors as rows, shape (3, 3), of which zero ones leave a direction open. Positions may be anywhere: each body
     stands for all its images.
 
-    The GIL is released in queries. While one runs, changes of the scene from other threads raise RuntimeError. Handles
-    of bodies that are gone raise ValueError, and nothing is changed.
+    A body and its own images are no pair. The GIL is released in queries, but held in first_contact. While one runs,
+    changes of the scene from other threads raise RuntimeError. Handles of bodies that are gone raise ValueError, and
+    nothing is changed.
     """
 
     def __init__(self, *, margin: float = 0.0, lattice: float | ArrayLike | None = None) -> None:
@@ -240,6 +242,11 @@ class Scene:
         """Returns (group, meets) of a body."""
         return self._scene.filter(body)
 
+    def shape(self, body: int) -> Shape | _core.CustomShape:
+        """Returns the shape of a body; one written in Python as a CustomShape."""
+        shape: Shape | _core.CustomShape = self._scene.shape(body)
+        return shape
+
     def pose(self, body: int) -> _core.Pose:
         """Returns the pose of a body, as it was given."""
         return self._scene.pose(body)
@@ -253,10 +260,15 @@ class Scene:
         return self._scene.size()
 
     def __contains__(self, body: Any) -> bool:
-        return isinstance(body, (int, np.integer)) and 0 <= int(body) <= _ALL_GROUPS and self._scene.has(int(body))
+        is_handle = isinstance(body, (int, np.integer)) and not isinstance(body, bool)
+        return is_handle and 0 <= int(body) <= _ALL_GROUPS and self._scene.has(int(body))
 
     def __repr__(self) -> str:
         return f"Scene({len(self)} bodies)"
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        """Raises TypeError: copies and pickles of scenes are not made."""
+        return self._scene.__reduce_ex__(protocol)
 
     def pairs_within(
         self,
@@ -320,14 +332,8 @@ class Scene:
         time_of_contact, and ValueError for handles that no body has.
         """
         if not isinstance(moving, Mapping):
-            raise TypeError(f"moving is {moving!r}; accepted: a dict of handles and motions")
-        for body in moving:
-            if isinstance(body, bool) or not isinstance(body, (int, np.integer)):
-                raise TypeError(f"moving has the key {body!r}; accepted: handles, integers")
-        handles = np.array(list(moving), dtype=np.int64)
-        return SceneContact(
-            *self._scene.first_contact(handles, list(moving.values()), t_max, t_min, max_evaluations, tolerance)
-        )
+            raise TypeError(f"moving is {shown(moving)}; accepted: a dict of handles and motions")
+        return SceneContact(*self._scene.first_contact(dict(moving), t_max, t_min, max_evaluations, tolerance))
 
     def closest_point(self, point: ArrayLike, within: float = math.inf) -> ScenePoint:
         """Returns the body whose surface is closest to a point, not further than `within`, and the point there.
@@ -342,12 +348,15 @@ class Scene:
         return ScenePoints(*self._scene.closest_point_many(points, within, threads))
 
     def ray_cast(self, origin: ArrayLike, direction: ArrayLike, t_max: float = math.inf) -> SceneRayHit:
-        """Returns the first body that origin + t direction, 0 <= t <= t_max, meets."""
+        """Returns the first body that origin + t direction, 0 <= t <= t_max, meets.
+
+        A periodic scene needs a t_max: rays of up to 1e6 times the shortest lattice vector are accepted there.
+        """
         place, hit = self._scene.ray_cast(origin, direction, t_max)
         return SceneRayHit(place[0], place[1], hit)
 
     def ray_cast_many(
         self, origins: ArrayLike, directions: ArrayLike, t_max: float = math.inf, threads: int = 1
     ) -> SceneRayHits:
-        """Returns the answers of ray_cast for rays, origins and directions of shape (M, 3)."""
+        """Returns the answers of ray_cast for rays, origins and directions of shape (M, 3); t_max as there."""
         return SceneRayHits(*self._scene.ray_cast_many(origins, directions, t_max, threads))

@@ -12,6 +12,8 @@ from typing import Any
 
 import numpy as np
 
+from hardbody._toml import shown
+
 _NAME_AND_UNIT = re.compile(r"(.*) \[(.*)\]")
 _INTEGER = re.compile(r"-?\d+")
 
@@ -20,7 +22,9 @@ def required(module: str, package: str, purpose: str) -> Any:
     """Imports a module of an optional package. Raises ImportError with the name of the package."""
     try:
         return importlib.import_module(module)
-    except ImportError as error:
+    except ModuleNotFoundError as error:
+        if error.name != package:
+            raise
         raise ImportError(f"{purpose} needs the package {package}: pip install {package}") from error
 
 
@@ -47,8 +51,14 @@ class Table(np.ndarray[Any, np.dtype[Any]]):
 
     def __getitem__(self, key: Any) -> Any:
         """Column of a name (a plain array), rows, or one row."""
+        if isinstance(key, str) and key not in self.names:
+            raise KeyError(f"no column {shown(key)}; there are: {', '.join(self.names)}")
         part = super().__getitem__(key)
-        return part.view(np.ndarray) if isinstance(key, str) else part
+        if isinstance(key, str):
+            return part.view(np.ndarray)
+        if isinstance(part, Table):
+            part.units = {name: unit for name, unit in self.units.items() if name in part.names}
+        return part
 
     @property
     def names(self) -> tuple[str, ...]:

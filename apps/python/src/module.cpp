@@ -11,6 +11,10 @@
 
 NB_MODULE(_core, module) {
   namespace python = hardbody::python;
+  // Types and the hooks at the end of the interpreter are those of the process.
+  if (PyInterpreterState_GetID(PyInterpreterState_Get()) != 0) {
+    throw nanobind::import_error("hardbody cannot be imported in a subinterpreter; accepted: the main interpreter");
+  }
   module.doc() = "Compiled part of the package hardbody, which has its public names.";
   module.attr("__version__") = hardbody::version();
   // Objects that global variables hold are alive at exit, and no leak; shapes that are written in Python may refer to

@@ -180,10 +180,10 @@ class ED_EXPORT Simulation {
   /// neighbours are `dilated`.
   double shrink_box(double target_box, double least_gain = 0);
 
-  /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs up to about 20
-  /// collisions a body. `keep_going` is called after every hundred collisions, sooner if these take many events; if it
-  /// returns false, tuning stops with the best thickness so far. Throws std::invalid_argument if all bodies are at
-  /// rest, except with `cells`, which have no envelopes.
+  /// Chooses the envelope's thickness by the work that the counters show, never by a clock. Runs trials, mostly three
+  /// to six, of 3 collisions a body each, but no fewer than 6144; the time advances. `keep_going` is called after every
+  /// hundred collisions, sooner if these take many events; if it returns false, tuning stops with the best thickness so
+  /// far. Throws std::invalid_argument if all bodies are at rest, except with `cells`, which have no envelopes.
   void tune_envelopes(const std::function<bool()>& keep_going = {});
   double envelope() const;  ///< current thickness, a length
 

@@ -227,7 +227,7 @@ Simulation Simulation::restore(std::string_view state, const std::vector<Species
   System system;
   system.species = species;
   if (reader.value<std::string>() != internal::bytes_of(species)) {
-    throw std::invalid_argument("state: is one of other species");
+    throw std::invalid_argument("state: is one of other species; accepted: a state of the same species");
   }
   reader(system.box);
   internal::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");

@@ -55,7 +55,7 @@ double cut_normal(Random& random) {
 BodyShape scaled_shape(const BodyShape& shape, double factor) {
   const auto scaled = [&](const auto& s) -> BodyShape {
     if constexpr (requires { s.scaled(factor); }) return s.scaled(factor);
-    throw std::invalid_argument("scaled: shape " + describe(shape) + " cannot be scaled; accepted: libgeom's shapes");
+    throw std::invalid_argument("scaled: shape " + describe(shape) + " cannot be scaled; accepted: built-in shapes");
   };
   return std::visit(scaled, shape);
 }

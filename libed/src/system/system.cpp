@@ -1,23 +1,15 @@
-#include "base/poll.h"
 #include "base/power_of_two.h"
-#include "cells/levels.h"
 #include "contact/body_shapes.h"
 #include "motion/checks.h"
-#include "system/bounding_radii.h"
 #include "system/uniaxial.h"
 
 #include <ed/system.h>
-#include <ed/tolerances.h>
-
-#include <geom/distance.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <optional>
-#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -248,56 +240,6 @@ KineticState kinetic_state(const System& system) {
   state.translational_kT = 2 * state.translational_energy / std::max(1, 3 * system.size() - 3);
   state.rotational_kT = 2 * state.rotational_energy / std::max(1, state.rotational_degrees_of_freedom);
   return state;
-}
-
-Audit audit(const System& system, const std::function<void()>& poll) {
-  Audit result;
-  result.minimum_distance = system.box;
-  result.kinetic = kinetic_state(system);
-  const int n = system.size();
-  std::vector<geom::Pose> poses(static_cast<std::size_t>(n));
-  // Pairs whose bounding spheres overlap, or are within a mean distance of that, so that a closest pair can be named in
-  // a dilute system too.
-  const double margin = 0.5 * system.box / std::cbrt(n);
-  const std::vector<double> sizes = internal::bounding_radii(system);
-  std::vector<double> extents;
-  extents.reserve(sizes.size());
-  for (const double size : sizes) extents.push_back(std::min(size + margin, 0.25 * system.box));
-  internal::CellLevels cells(extents, system.box);
-  for (int i = 0; i < n; ++i) {
-    const Body& body = system.bodies[static_cast<std::size_t>(i)];
-    if (!body.position.allFinite() || !body.rotation.allFinite() || !body.velocity.allFinite() ||
-        !body.angular_velocity.allFinite()) {
-      result.finite = false;
-      return result;
-    }
-    poses[static_cast<std::size_t>(i)] = geom::Pose(body.rotation, body.position);
-    cells.place(i, body.position);
-  }
-  std::vector<internal::NearBody> near;
-  for (int i = 0; i < n; ++i) {
-    internal::poll_at(i, poll);
-    const geom::Pose& X_i = poses[static_cast<std::size_t>(i)];
-    cells.search(i, X_i.position(), near, [&](std::span<const internal::NearBody> others) {
-      for (const auto& [j, r] : others) {
-        if (j <= i) continue;
-        const geom::Pose X_image(poses[static_cast<std::size_t>(j)].rotation(), X_i.position() + r);
-        const geom::DistanceResult d = distance(system.species_of(i).shape, X_i, system.species_of(j).shape, X_image);
-        if (!(d.status == geom::DistanceStatus::separated || d.status == geom::DistanceStatus::overlapping)) {
-          ++result.unanswered;
-          continue;
-        }
-        const double size = sizes[static_cast<std::size_t>(i)] + sizes[static_cast<std::size_t>(j)];
-        if (d.distance < -kAuditOverlap * size) ++result.overlaps;
-        if (d.distance < result.minimum_distance) {
-          result.minimum_distance = d.distance;
-          result.closest_i = i;
-          result.closest_j = j;
-        }
-      }
-    });
-  }
-  return result;
 }
 
 }  // namespace ed

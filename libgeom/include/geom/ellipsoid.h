@@ -36,7 +36,7 @@ class GEOM_EXPORT Ellipsoid {
   Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< gradient of f
   Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< Hessian of f
 
-  /// Returns h(n) = |D n| and s(n) = D^2 n / h with D = diag(a, b, c); n != 0, any length.
+  /// Returns h(n) = |D n| and s(n) = D^2 n / h with D = diag(a, b, c).
   Support support(const Eigen::Vector3d& n) const;
   /// Returns hess h = (D^2 - s s^T) / h. For |n| = 1 its eigenvalues across n are the principal radii of curvature at
   /// s.

@@ -16,12 +16,12 @@ struct Support {
 
 /// Convex body given by its support function, in its own frame, the origin in its interior.
 ///
-/// `support(n)` and `support_hessian(n)` = hess h(n) take any n != 0. `bounding_radius()` and `inscribed_radius()` are
-/// the radii of spheres about the origin that contain the body and are contained in it. `distance` needs nothing else.
-/// A shape may also have `min_curvature_radius()`, a lower bound of its smallest principal radius of curvature (0
-/// without it): overlaps down to the sum of both bodies' values are answered by Newton's method alone, exact to
-/// rounding and within microseconds; deeper ones need the search over all normals and have its `error_bound` (see
-/// distance.h).
+/// `support(n)` and `support_hessian(n)` = hess h(n) take any n of a length from 1e-150 to 1e150. `bounding_radius()`
+/// and `inscribed_radius()` are the radii of spheres about the origin that contain the body and are contained in it.
+/// `distance` needs nothing else. A shape may also have `min_curvature_radius()`, a lower bound of its smallest
+/// principal radius of curvature (0 without it): overlaps down to the sum of both bodies' values are answered by
+/// Newton's method alone, exact to rounding and within microseconds; deeper ones need the search over all normals and
+/// have its `error_bound` (see distance.h).
 template <class T>
 concept SupportShape = requires(const T& shape, const Eigen::Vector3d& n) {
   { shape.support(n) } -> std::convertible_to<Support>;

@@ -106,8 +106,8 @@ std::int32_t Scene::Bodies::item(BodyId body) const {
   const auto k = static_cast<std::size_t>(body);
   if (k >= item_of.size() || item_of[k] < 0) {
     kernel::refuse("Scene: body " + std::to_string(k) +
-                   (k < item_of.size() ? " has been removed" : " is not in the scene") + "; it has " +
-                   std::to_string(count) + " bodies, and the next one will be " + std::to_string(item_of.size()));
+                   (k < item_of.size() ? " has been removed" : " has not been added") +
+                   "; accepted: one of the scene's " + std::to_string(count) + " bodies");
   }
   return item_of[k];
 }

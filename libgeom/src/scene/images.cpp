@@ -58,6 +58,22 @@ Images::Images(const Lattice& lattice) {
   }
 }
 
+Images::Range Images::range(const Box3& moved, const Box3& other, double reach) const {
+  // Lattice vectors in [low, high] bring the box within reach.
+  Range near;
+  near.low = (other.low - moved.high).array() - reach;
+  near.high = (other.high - moved.low).array() + reach;
+  const Vector3d middle = inverse_ * (0.5 * (near.low + near.high));
+  const Vector3d spread = inverse_.cwiseAbs() * (0.5 * (near.high - near.low));
+  constexpr double kRounding = 1e-9;
+  for (int k = 0; k < 3; ++k) {
+    near.first[k] = std::ceil(middle[k] - spread[k] - kRounding);
+    near.last[k] = std::floor(middle[k] + spread[k] + kRounding);
+    near.count *= std::max(0.0, near.last[k] - near.first[k] + 1);
+  }
+  return near;
+}
+
 void Images::check_count(double count) {
   constexpr double kMost = 1e8;
   if (count <= kMost) return;

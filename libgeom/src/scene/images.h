@@ -40,6 +40,14 @@ class Images {
   double shortest() const { return shortest_; }  ///< smallest length of a lattice vector; infinite without any
   double longest() const { return longest_; }    ///< largest length of a lattice vector
 
+  /// Returns how many cells `for_each_near` looks at.
+  double count_near(const Box3& moved, const Box3& other, double reach) const {
+    return moved.empty() || other.empty() ? 0 : range(moved, other, reach).count;
+  }
+
+  /// Throws std::invalid_argument for more than 1e8 cells, NaN included.
+  static void check_count(double count);
+
   /// Calls visit(cell) for cells such that the box moved there may be within `reach` of the other one along every axis.
   /// Open space has one cell. Periodic: throws std::invalid_argument for more than 1e8 cells.
   /// `visit` returns false to stop. Returns whether it went on to the end.
@@ -47,8 +55,13 @@ class Images {
   bool for_each_near(const Box3& moved, const Box3& other, double reach, const Visit& visit) const;
 
  private:
-  /// Throws std::invalid_argument for too many cells, NaN included.
-  static void check_count(double count);
+  /// Cells whose lattice vectors may be within [low, high].
+  struct Range {
+    Eigen::Vector3d low, high;
+    Eigen::Vector3d first, last;
+    double count = 1;
+  };
+  Range range(const Box3& moved, const Box3& other, double reach) const;
 
   Eigen::Matrix3d vectors_;
   Eigen::Matrix3d inverse_;  ///< rows: coordinates along the lattice vectors; 0 for those that are none
@@ -63,20 +76,9 @@ template <class Visit>
 bool Images::for_each_near(const Box3& moved, const Box3& other, double reach, const Visit& visit) const {
   if (moved.empty() || other.empty()) return true;
   if (!periodic()) return visit(Eigen::Vector3d::Zero().eval());
-  // Lattice vectors in [low, high] bring the box within reach.
-  const Eigen::Vector3d low = (other.low - moved.high).array() - reach;
-  const Eigen::Vector3d high = (other.high - moved.low).array() + reach;
-  const Eigen::Vector3d middle = inverse_ * (0.5 * (low + high));
-  const Eigen::Vector3d spread = inverse_.cwiseAbs() * (0.5 * (high - low));
-  constexpr double kRounding = 1e-9;
-  Eigen::Vector3d first, last;
-  double count = 1;
-  for (int k = 0; k < 3; ++k) {
-    first[k] = std::ceil(middle[k] - spread[k] - kRounding);
-    last[k] = std::floor(middle[k] + spread[k] + kRounding);
-    count *= std::max(0.0, last[k] - first[k] + 1);
-  }
-  check_count(count);
+  const Range near = range(moved, other, reach);
+  check_count(near.count);
+  const auto& [low, high, first, last, count] = near;
   Eigen::Vector3d cell;
   for (cell[0] = first[0]; cell[0] <= last[0]; ++cell[0]) {
     for (cell[1] = first[1]; cell[1] <= last[1]; ++cell[1]) {

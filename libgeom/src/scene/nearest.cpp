@@ -117,7 +117,9 @@ ScenePair Scene::distance(BodyId i, BodyId j, const DistanceOptions& options) co
   const Body& a = bodies_->at(bodies_->item(i));
   const std::int32_t item = bodies_->item(j);
   const Body& b = bodies_->at(item);
-  if (i == j) kernel::refuse("Scene::distance: both handles are " + std::to_string(static_cast<std::uint32_t>(i)));
+  if (i == j)
+    kernel::refuse("Scene::distance: both handles are " + std::to_string(static_cast<std::uint32_t>(i)) +
+                   "; accepted: two different bodies");
   const scene::Images& images = bodies_->images;
   const Box3 around = scene::box_around(a.shape, a.X_WB, images.longest());
   const Box3& box = bodies_->broad.tight(item);

@@ -168,8 +168,11 @@ SceneRayHit Scene::ray_cast(const Vector3d& origin, const Vector3d& direction, d
   if (!images.periodic()) {
     visit_part(ray, all, broad, images, best, visit);
   } else if (!bounds.empty()) {
+    double visited = 0;
     in_parts(ray, clipped(ray, bounds, images, all), images, t_max, [&](const Part& part) {
       if (!(part.first <= ray.scaled(best.limit()))) return false;
+      // Vectors that are short beside bodies have many images on the way.
+      scene::Images::check_count(visited += images.count_near(bounds, ray.around(part), 0));
       visit_part(ray, part, broad, images, best, visit);
       return true;
     });

@@ -44,7 +44,39 @@ bool read_plain(nb::handle value, double& out) {
   return true;
 }
 
+/// Returns an attribute; null if there is none.
+nb::object find_attribute(nb::handle object, const char* name) {
+  nb::object value = nb::steal(PyObject_GetAttrString(object.ptr(), name));
+  if (value.is_valid()) return value;
+  nb::python_error error;
+  if (!error.matches(PyExc_AttributeError)) throw error;
+  return value;
+}
+
+/// Returns whether a value is a number of another class, a Fraction or a Decimal, or an integer beyond double.
+bool is_number_object(nb::handle value) {
+  if (PyBool_Check(value.ptr()) || PyUnicode_Check(value.ptr()) || !has_attribute(value, "__float__")) return false;
+  return !has_attribute(value, "dtype") && !has_attribute(value, "__array__");
+}
+
+double read_object(nb::handle value, const char* name) {
+  const nb::object read = nb::steal(PyNumber_Float(value.ptr()));
+  if (read.is_valid()) return PyFloat_AsDouble(read.ptr());
+  nb::python_error error;
+  if (!error.matches(PyExc_OverflowError)) throw error;
+  refuse_value(name, "beyond 1.8e308", "a real number");
+}
+
 }  // namespace
+
+bool has_attribute(nb::handle object, const char* name) {
+  return find_attribute(object, name).is_valid();
+}
+
+nb::object attribute(nb::handle object, const char* name) {
+  nb::object value = find_attribute(object, name);
+  return value.is_valid() ? value : nb::none();
+}
 
 void refuse_type(const std::string& name, nb::handle value, const std::string& accepted) {
   throw nb::type_error((name + " is " + value_text(value) + "; accepted: " + accepted).c_str());
@@ -73,6 +105,7 @@ std::string shown(const Eigen::Vector3d& vector) {
 double number(nb::handle value, const char* name) {
   double read = 0;
   if (read_plain(value, read)) return read;
+  if (is_number_object(value)) return read_object(value, name);
   const RealArray array(value, name, "a real number");
   if (!array.shape().empty()) refuse_shape(name, array.shape(), "a real number");
   return array.data()[0];

@@ -34,7 +34,13 @@ std::string shown(const double* numbers, std::size_t count);
 /// Overload for a vector.
 std::string shown(const Eigen::Vector3d& vector);
 
-/// Returns a real number; it may be infinite or NaN.
+/// Returns whether an object has an attribute. Other exceptions than AttributeError are passed on.
+bool has_attribute(nb::handle object, const char* name);
+
+/// Returns an attribute, as has_attribute looks for it; None if there is none.
+nb::object attribute(nb::handle object, const char* name);
+
+/// Returns a real number, of any class that has __float__ but bool and str; it may be infinite or NaN.
 double number(nb::handle value, const char* name);
 
 /// Returns a finite real number.

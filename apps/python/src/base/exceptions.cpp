@@ -5,10 +5,12 @@
 
 #include <nanobind/nanobind.h>
 
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <new>
 #include <stdexcept>
+#include <string>
 
 namespace hardbody::python {
 namespace {
@@ -35,6 +37,14 @@ void set_os_error(const WriteError& error) {
   Py_XDECREF(reason);
 }
 
+/// Returns a message of the libraries with "Scene::move" as "Scene.move".
+std::string with_python_names(std::string message) {
+  for (std::size_t at = message.find("::"); at != std::string::npos; at = message.find("::", at)) {
+    message.replace(at, 2, ".");
+  }
+  return message;
+}
+
 }  // namespace
 
 void register_exceptions() {
@@ -46,7 +56,7 @@ void register_exceptions() {
     } catch (const WriteError& e) {
       set_os_error(e);
     } catch (const std::invalid_argument& e) {
-      set_error(PyExc_ValueError, e.what());
+      set_error(PyExc_ValueError, with_python_names(e.what()).c_str());
     } catch (const std::bad_alloc&) {
       PyErr_SetString(PyExc_MemoryError, "hardbody: what this call computes does not fit into memory");
     }

@@ -11,6 +11,8 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
+#include <cmath>
+
 namespace hardbody::python {
 
 /// Functions of a kind of shape that its class is made of.
@@ -20,6 +22,15 @@ struct ShapeCalls {
   bool (*equal)(const Shape&, const Shape&);  ///< comparison of all numbers
   nb::tuple (*arguments)(const Shape&);       ///< arguments of that call
 };
+
+/// Returns the support in a direction of any length: squares of its components neither overflow nor vanish.
+template <class Shape>
+geom::Support support_of(const Shape& shape, const Eigen::Vector3d& n) {
+  const int exponent = std::ilogb(n.cwiseAbs().maxCoeff());
+  geom::Support support = shape.support(n.unaryExpr([=](double x) { return std::ldexp(x, -exponent); }));
+  support.height = std::ldexp(support.height, exponent);
+  return support;
+}
 
 /// Defines what every shape has.
 template <class Shape>
@@ -53,7 +64,7 @@ void bind_common(nb::class_<Shape>& type, const ShapeCalls<Shape>& calls) {
       .def(
           "support",
           [](const Shape& s, nb::handle n) {
-            const geom::Support support = s.support(direction3(n, "n"));
+            const geom::Support support = support_of(s, direction3(n, "n"));
             return nb::make_tuple(support.height, array_of(support.point));
           },
           nb::arg("n").none(),

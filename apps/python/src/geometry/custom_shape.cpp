@@ -57,7 +57,7 @@ thread_local KeptInterrupt* kept_interrupt = nullptr;
 
 /// Returns an attribute, or what it returns if it can be called; None if there is none.
 nb::object property(nb::handle object, const char* name) {
-  nb::object value = nb::getattr(object, name, nb::none());
+  nb::object value = attribute(object, name);
   return PyCallable_Check(value.ptr()) != 0 ? value() : value;
 }
 
@@ -72,7 +72,7 @@ double radius(nb::handle object, const std::string& shape, const char* name) {
 
 /// Returns a method; None if the object has none. Throws TypeError for another attribute of that name.
 nb::object optional_method(nb::handle object, const std::string& shape, const char* name) {
-  nb::object value = nb::getattr(object, name, nb::none());
+  nb::object value = attribute(object, name);
   if (!value.is_none() && PyCallable_Check(value.ptr()) == 0)
     refuse_type(shape + '.' + name, value, "a method, or None");
   return value;
@@ -92,7 +92,7 @@ KeptInterrupt::~KeptInterrupt() {
 
 PythonShape::PythonShape(nb::object object, std::string name, bool has_volume) {
   auto held = std::make_shared<Held>();
-  held->support = nb::getattr(object, "support", nb::none());
+  held->support = attribute(object, "support");
   if (PyCallable_Check(held->support.ptr()) == 0) {
     refuse_type(name, object, "an object with a method support(n)");
   }
@@ -100,7 +100,7 @@ PythonShape::PythonShape(nb::object object, std::string name, bool has_volume) {
   static_cast<void>(optional_method(object, name, "inertia"));
   held->bounding_radius = radius(object, name, "bounding_radius");
   held->inscribed_radius = radius(object, name, "inscribed_radius");
-  if (nb::hasattr(object, "min_curvature_radius")) {
+  if (!attribute(object, "min_curvature_radius").is_none()) {
     held->min_curvature_radius = radius(object, name, "min_curvature_radius");
   }
   held->object = std::move(object);
@@ -144,7 +144,10 @@ bool plain_support(nb::handle answer, geom::Support& out) {
 
 geom::Support read_support(nb::handle answer, const std::string& name) {
   if (!nb::isinstance<nb::tuple>(answer) || nb::len(answer) != 2) {
-    refuse_type(name, answer, "a tuple of the height and the point");
+    constexpr const char* kSupportAnswer = "a tuple of the height and the point";
+    if (!nb::isinstance<nb::tuple>(answer)) refuse_type(name, answer, kSupportAnswer);
+    throw nb::type_error(
+        (name + " has " + std::to_string(nb::len(answer)) + " entries; accepted: " + kSupportAnswer).c_str());
   }
   return {number(answer[0], (name + "[0]").c_str()), vector3(answer[1], (name + "[1]").c_str())};
 }
@@ -226,7 +229,7 @@ const PythonShape* python_shape(const ed::BodyShape& shape) {
 }
 
 bool is_custom_shape(nb::handle value) {
-  return !PyType_Check(value.ptr()) && nb::hasattr(value, "support");
+  return !PyType_Check(value.ptr()) && has_attribute(value, "support");
 }
 
 namespace {
@@ -292,8 +295,8 @@ nb::tuple reduced(nb::handle self) {
 constexpr const char* kShapeDoc =
     "Convex body of your own: an object with a support function.\n"
     "\n"
-    "Queries, Species and lists of shapes also take the object itself. It has, in the body's frame, whose origin is\n"
-    "inside and is the centre of mass:\n"
+    "Queries of one body or of a pair, Scene.add and Species also take the object itself; lists of shapes do not. It\n"
+    "has, in the body's frame, whose origin is inside and is the centre of mass:\n"
     "\n"
     "support(n)\n"
     "    Returns (h, s) for a direction n, an array of shape (3,), of any length but 0: the height h = max of n.x "

@@ -45,8 +45,8 @@ QueryBody query_body(nb::handle value, const char* name) {
 void bind_half_space(nb::module_& module) {
   nb::class_<HalfSpace>(
       module, "HalfSpace", nb::is_weak_referenceable(),
-      "Half-space normal.x <= offset in the body's frame, such as a floor: for distance, overlap, closest_point,\n"
-      "contains and ray_cast, beside any built-in shape.")
+      "Half-space normal.x <= offset in the body's frame, such as a floor: for the queries of one body or of a\n"
+      "pair, contact_patch and distance_derivatives too, beside any built-in shape.")
       .def(
           "__init__",
           [](HalfSpace* self, nb::handle normal, nb::handle offset) {

@@ -20,7 +20,7 @@ constexpr std::array<Words, 5> kBeginnings = {{
 }};
 
 /// Phrases within messages: longer than an option, so that no file's name has one.
-constexpr std::array<Words, 15> kPhrases = {{
+constexpr std::array<Words, 16> kPhrases = {{
     {"hardbody resume to continue it, or --force to overwrite it",
      "hardbody.resume to continue it, or force=True to overwrite it"},
     {"[grid] makes this a sweep: hardbody sweep takes it", "[grid] makes this a sweep: hardbody.sweep takes it"},
@@ -28,7 +28,8 @@ constexpr std::array<Words, 15> kPhrases = {{
      ": results so far are written, hardbody.resume(...) continues"},
     {"the start is not saved: hardbody resume begins", "the start is not saved: hardbody.resume(...) begins"},
     {" is a key of sweeps: hardbody sweep takes them", " is a key of sweeps: hardbody.sweep takes them"},
-    {"a finished run: hardbody resume ", "a finished run: hardbody.resume "},
+    {"a finished run: hardbody resume ", "a finished run: hardbody.resume of "},
+    {": the same command continues", ": the same call continues"},
     {": --force would delete ", ": force=True would delete "},
     {"; --every N uses only every N-th", "; every=N uses only every N-th"},
     {"; accepted: --time-step, the time between two steps", "; accepted: time_step, the time between two steps"},

@@ -20,10 +20,12 @@
 
 #include <Eigen/Core>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -36,8 +38,8 @@ using geom::Pose;
 /// Largest number of handles.
 constexpr std::size_t kMostHandles = std::size_t{1} << 32;
 
-geom::SceneShape scene_shape(nb::handle value) {
-  return std::visit([](const auto& s) { return geom::SceneShape(s); }, geom_shape(body_shape(value, "shape")));
+geom::SceneShape scene_shape(const ed::BodyShape& shape) {
+  return std::visit([](const auto& s) { return geom::SceneShape(s); }, geom_shape(shape));
 }
 
 const Pose& checked_pose(nb::handle value) {
@@ -70,10 +72,20 @@ geom::Lattice lattice_of(nb::handle value) {
   if (nb::isinstance<nb::float_>(value) || nb::isinstance<nb::int_>(value)) {
     return geom::Lattice::cube(positive(value, "lattice"));
   }
-  const RealRows rows(value, "lattice", 3);
-  if (rows.size() != 3) refuse_shape("lattice", {rows.size(), 3}, "(3, 3), or the edge of a cube");
-  for (std::size_t k = 0; k < 3; ++k) lattice.vectors[k] = rows.finite_vector(k);
+  constexpr const char* kLattices = "the edge of a cube, or finite numbers of shape (3, 3)";
+  const RealArray rows(value, "lattice", kLattices);
+  if (rows.shape() != std::vector<std::size_t>{3, 3}) refuse_shape("lattice", rows.shape(), kLattices);
+  for (std::size_t k = 0; k < 3; ++k) {
+    lattice.vectors[k] = Eigen::Vector3d::Map(rows.data() + 3 * k);
+    if (!lattice.vectors[k].allFinite()) refuse_value(entry("lattice", k), shown(lattice.vectors[k]), "finite numbers");
+  }
   return lattice;
+}
+
+double margin_of(nb::handle value) {
+  const double margin = number(value, "margin");
+  if (!(margin >= 0) || !std::isfinite(margin)) refuse_value("margin", shown(margin), "a finite length of 0 or more");
+  return margin;
 }
 
 /// Length that may be infinite.
@@ -88,14 +100,24 @@ double reach(nb::handle value, const char* name) {
 class PythonScene {
  public:
   PythonScene(nb::handle margin, nb::handle lattice)
-      : scene_({.margin = finite_number(margin, "margin"), .lattice = lattice_of(lattice)}) {}
+      : scene_({.margin = margin_of(margin), .lattice = lattice_of(lattice)}) {}
 
   const geom::Scene& scene() const { return scene_; }
 
+  /// Returns the shape of a body as Python has it.
+  nb::object shape(nb::handle handle) const {
+    const BodyId body = handle_of(handle, "body");
+    const auto held = scene_.shape(body);
+    if (const auto* built_in = std::get_if<geom::Shape>(&held)) {
+      return std::visit([](const auto& s) { return nb::cast(s); }, *built_in);
+    }
+    return nb::cast(custom_shapes_.at(body));
+  }
+
   std::int64_t add(nb::handle shape, nb::handle pose, nb::handle group, nb::handle meets) {
-    const geom::SceneShape given = scene_shape(shape);
-    const BodyId body = idle().add(given, checked_pose(pose), filter_of(group, meets));
-    if (std::holds_alternative<geom::AnyConvex>(given.any())) has_custom_shapes_ = true;
+    const ed::BodyShape given = body_shape(shape, "shape");
+    const BodyId body = idle().add(scene_shape(given), checked_pose(pose), filter_of(group, meets));
+    if (const auto* custom = std::get_if<ed::CustomShape>(&given)) custom_shapes_.emplace(body, *custom);
     return static_cast<std::int64_t>(body);
   }
 
@@ -138,6 +160,7 @@ class PythonScene {
     }
     for (const BodyId body : removed) {
       if (scene.has(body)) scene.remove(body);
+      custom_shapes_.erase(body);
     }
   }
 
@@ -162,7 +185,7 @@ class PythonScene {
   }
 
   nb::tuple overlapping(nb::handle shape, nb::handle pose) {
-    const geom::SceneShape given = scene_shape(shape);
+    const geom::SceneShape given = scene_shape(body_shape(shape, "shape"));
     const Pose& X_WS = checked_pose(pose);
     std::vector<geom::SceneImage> found;
     read([&] { scene_.overlapping(given, X_WS, found); });
@@ -172,13 +195,16 @@ class PythonScene {
   nb::tuple distance(nb::handle i, nb::handle j, nb::handle max_iterations, nb::handle penetration) {
     const geom::DistanceOptions options = distance_options(max_iterations, penetration);
     const BodyId first = handle_of(i, "i"), second = handle_of(j, "j");
+    if (first == second) {
+      refuse_value("j", std::to_string(static_cast<std::uint32_t>(second)), "another body than i");
+    }
     geom::ScenePair pair;
     read([&] { pair = scene_.distance(first, second, options); });
     return nb::make_tuple(array_of(pair.image), pair.result);
   }
 
   nb::tuple nearest(nb::handle shape, nb::handle pose, nb::handle within) {
-    const geom::SceneShape given = scene_shape(shape);
+    const geom::SceneShape given = scene_shape(body_shape(shape, "shape"));
     const Pose& X_WS = checked_pose(pose);
     const double length = reach(within, "within");
     geom::SceneNearest found;
@@ -194,12 +220,13 @@ class PythonScene {
     return nb::make_tuple(place_of(found.body), found.result);
   }
 
-  nb::tuple first_contact(nb::handle handles, nb::handle motions, nb::handle t_max, nb::handle t_min,
-                          nb::handle max_evaluations, nb::handle tolerance) {
-    const std::vector<BodyId> bodies = handles_of(handles);
+  nb::tuple first_contact(nb::handle motions, nb::handle t_max, nb::handle t_min, nb::handle max_evaluations,
+                          nb::handle tolerance) {
     std::vector<ed::MovingBody> moving;
-    for (const nb::handle motion : motions)
-      moving.push_back({bodies.at(moving.size()), given_motion(motion, "moving")});
+    for (const auto& [key, motion] : nb::cast<nb::dict>(motions)) {
+      const BodyId body = handle_of(key, "moving: a key");
+      moving.push_back({body, given_motion(motion, entry("moving", static_cast<std::size_t>(body)))});
+    }
     const double from = finite_number(t_min, "t_min"), until = finite_number(t_max, "t_max");
     const ed::GivenContactOptions options = given_options(max_evaluations, tolerance);
     geom::Scene& scene = idle();
@@ -317,13 +344,13 @@ class PythonScene {
   /// Returns the number of threads: 1 where shapes are written in Python, which runs one thread at a time.
   int threads_of(nb::handle threads) const {
     const int number = thread_count(threads);
-    return has_custom_shapes_ ? 1 : number;
+    return custom_shapes_.empty() ? number : 1;
   }
 
   geom::Scene scene_;
   int readers_ = 0;
   int movers_ = 0;  ///< number of calls of first_contact that run
-  bool has_custom_shapes_ = false;
+  std::unordered_map<BodyId, ed::CustomShape> custom_shapes_;
 };
 
 /// Defines a method whose arguments the package's Scene has checked the names of.
@@ -356,8 +383,7 @@ void bind_scenes(nb::module_& module) {
   define(type, "distance", &P::distance, kTuple, "i", "j", "max_iterations", "penetration");
   define(type, "nearest", &P::nearest, kTuple, "shape", "pose", "within");
   define(type, "nearest_to", &P::nearest_to, kTuple, "body", "within");
-  define(type, "first_contact", &P::first_contact, kTuple, "bodies", "motions", "t_max", "t_min", "max_evaluations",
-         "tolerance");
+  define(type, "first_contact", &P::first_contact, kTuple, "moving", "t_max", "t_min", "max_evaluations", "tolerance");
   define(type, "closest_point", &P::closest_point, kTuple, "point", "within");
   define(type, "ray_cast", &P::ray_cast, kTuple, "origin", "direction", "t_max");
   define(type, "closest_point_many", &P::closest_point_many, kTuple, "points", "within", "threads");
@@ -369,6 +395,8 @@ void bind_scenes(nb::module_& module) {
   define(
       type, "pose", [](const P& s, nb::handle body) { return s.scene().pose(handle_of(body, "body")); }, "Pose",
       "body");
+  define(
+      type, "shape", [](const P& s, nb::handle body) { return s.shape(body); }, "typing.Any", "body");
   define(
       type, "filter",
       [](const P& s, nb::handle body) {

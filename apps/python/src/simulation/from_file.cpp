@@ -40,12 +40,11 @@ std::optional<std::int64_t> frame_number(nb::handle frame, const std::string& fi
   const long long k =
       integer(frame, "frame", std::numeric_limits<std::int64_t>::min() + 1, std::numeric_limits<std::int64_t>::max());
   if (k == -1) return std::nullopt;
-  if (k >= 0) return k;
   const auto count = static_cast<std::int64_t>(open_frames(file)->frame_count());
-  if (-k > count) {
+  if (k < -count || (k >= count && count > 0)) {
     refuse_value("frame", std::to_string(k), "-" + std::to_string(count) + " to " + std::to_string(count - 1));
   }
-  return count + k;
+  return k < 0 ? count + k : k;
 }
 
 /// Returns the program's config of a start from this file that leaves everything else to the file.

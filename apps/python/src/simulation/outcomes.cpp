@@ -115,7 +115,7 @@ void bind_kinetic(nb::module_& module) {
 void bind_audit(nb::module_& module) {
   using ed::Audit;
   nb::class_<Audit> type(module, "Audit", nb::is_weak_referenceable(),
-                         "Distances of all pairs of a state, computed from scratch.");
+                         "Distances of all pairs of a state, all images included, computed from scratch.");
   type.def_ro("minimum_distance", &Audit::minimum_distance,
               "Smallest distance of all pairs, below 0 for an overlap; the box if no bodies are near each other.")
       .def_prop_ro(
@@ -125,7 +125,7 @@ void bind_audit(nb::module_& module) {
             return nb::make_tuple(a.closest_i, a.closest_j);
           },
           nb::for_getter(nb::sig("def closest_pair(self) -> tuple[int, int] | None")),
-          "Bodies of that distance; None if none are near each other.")
+          "Bodies of that distance, twice the same for a body and an image of it; None if none are near each other.")
       .def_ro("overlaps", &Audit::overlaps, "Number of pairs that overlap by more than 1e-12 of their size.")
       .def_ro("unanswered", &Audit::unanswered, "Number of pairs whose distance has no answer.")
       .def_ro("finite", &Audit::finite, "Whether all numbers of the state are finite.")

@@ -254,14 +254,18 @@ void PythonSimulation::change(const Work& work) {
   check_trouble();
 }
 
-double PythonSimulation::shrink_box(double target_box, double least_gain) {
+double PythonSimulation::shrink_box(nb::handle target_box, double least_gain) {
   refuse_with_observables("shrink_box");
+  const double target = positive(target_box, "target_box");
+  if (target > simulation_.box()) {
+    refuse_value("target_box", shown(target), "at most the box, " + shown(simulation_.box()));
+  }
   if (options_.neighbours != ed::Neighbours::dilated) {
     throw std::runtime_error("shrink_box needs neighbours=\"dilated\"; this simulation has \"" +
                              std::string(to_string(options_.neighbours)) + '"');
   }
   double box = 0;
-  change([&] { box = simulation_.shrink_box(target_box, least_gain); });
+  change([&] { box = simulation_.shrink_box(target, least_gain); });
   return box;
 }
 

@@ -58,7 +58,7 @@ class PythonSimulation {
   /// Runs until one of the plan's ends is reached. `self`: the Python object, for the callback.
   void run(nb::handle self, const RunPlan& plan);
 
-  double shrink_box(double target_box, double least_gain);
+  double shrink_box(nb::handle target_box, double least_gain);
   void tune_envelopes();
 
   /// Starts measuring, at time 0. Throws ValueError at another time.

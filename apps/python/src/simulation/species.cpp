@@ -32,7 +32,7 @@ constexpr const char* kComponents =
 
 /// Returns the moments of uniform density of a shape that is written in Python: it has to know them.
 Vector3d own_moments(const PythonShape& shape, double mass) {
-  const nb::object method = nb::getattr(shape.object(), "inertia", nb::none());
+  const nb::object method = attribute(shape.object(), "inertia");
   if (PyCallable_Check(method.ptr()) == 0) {
     throw nb::type_error("inertia is missing; accepted: three moments, or a shape with a method inertia(mass)");
   }

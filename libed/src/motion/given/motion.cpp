@@ -144,10 +144,10 @@ GivenMotion GivenMotion::on(const GivenMotion& parent) const {
 }
 
 std::string check_given_motion(const GivenMotion& motion, double from, double to, int samples) {
-  check_interval(": check_given_motion", from, to);
+  check_interval(": the motion is checked", from, to);
   if (!std::isfinite(to - from)) {
     std::ostringstream message;
-    message << ": check_given_motion: from time " << from << " to " << to << "; accepted: a finite duration";
+    message << ": the motion is checked from time " << from << " to " << to << "; accepted: a finite duration";
     refuse_motion(message.str());
   }
   const int steps = std::max(samples, 2);

@@ -197,6 +197,35 @@ TEST(Audit, SeesOverlapsBeyondRoundingWhereverTheyAre) {
   }
 }
 
+TEST(Audit, TriesAllImagesInASmallBox) {
+  // The rod touches the nearest image of the ball with its side, and overlaps the next one with its tip.
+  const Eigen::Matrix3d along = Eigen::AngleAxisd(std::atan2(0.6, 1.4), Vector3d::UnitZ()).toRotationMatrix();
+  ed::System system{
+      .box = 2.5,
+      .species = {ed::uniform_species(geom::Ellipsoid({1.6, 0.1, 0.1})), ed::uniform_species(geom::Sphere(0.1))},
+      .bodies = std::vector<ed::Body>(2)};
+  system.bodies[0].rotation = along;
+  system.bodies[1].position = {1.4, 0.6, 0};
+  system.bodies[1].species = 1;
+  const ed::Audit audit = ed::audit(system);
+  EXPECT_EQ(audit.overlaps, 1);
+  const geom::DistanceResult depth = geom::distance(geom::Ellipsoid({1.6, 0.1, 0.1}), geom::Pose(along, {0, 0, 0}),
+                                                    geom::Sphere(0.1), geom::Pose::translation({1.4, 0.6, 0}));
+  EXPECT_NEAR(audit.minimum_distance, depth.distance, 1e-13);
+  EXPECT_LT(depth.distance, -0.05);
+
+  // A sphere and its own images: three pairs of neighbours along the edges, none along the diagonals of faces.
+  system = {.box = 1.5, .species = {ed::uniform_species(geom::Sphere(1))}, .bodies = std::vector<ed::Body>(1)};
+  const ed::Audit alone = ed::audit(system);
+  EXPECT_EQ(alone.overlaps, 3);
+  EXPECT_NEAR(alone.minimum_distance, -0.5, 1e-13);
+  EXPECT_EQ(alone.closest_i, 0);
+  EXPECT_EQ(alone.closest_j, 0);
+
+  system.box = 0.2;
+  EXPECT_THROW(static_cast<void>(ed::audit(system)), std::invalid_argument);
+}
+
 TEST(Audit, CountsOverlapsInTheSizeOfTheBodies) {
   for (const double length : {1e-3, 1.0, 1e3}) {
     const ed::Species species = ed::paper_species(geom::Ellipsoid(length * Vector3d(1, 1, 3)));

@@ -1,5 +1,6 @@
 /// Pairs of scenes against all pairs, one by one.
 
+#include "common/full_form.h"
 #include "common/geom/scene_bodies.h"
 #include "scene/parallel.h"
 
@@ -338,7 +339,7 @@ TEST(Scene, RefusesWhatItCannotDo) {
   const BodyId gone = scene.add(geom::Sphere(0.2), Pose());
   scene.remove(gone);
   EXPECT_THAT(message([&] { scene.remove(gone); }), HasSubstr("body 2 has been removed"));
-  EXPECT_THAT(message([&] { (void)scene.pose(static_cast<BodyId>(9)); }), HasSubstr("body 9 is not in the scene"));
+  EXPECT_THAT(message([&] { (void)scene.pose(static_cast<BodyId>(9)); }), HasSubstr("body 9 has not been added"));
   const std::vector<BodyId> both{a, gone};
   const std::vector<Pose> poses{Pose::translation({0.5, 0, 0}), Pose()};
   EXPECT_THAT(message([&] { scene.move(both, poses); }), HasSubstr("removed"));
@@ -364,6 +365,17 @@ TEST(Scene, RefusesWhatItCannotDo) {
   const Vector3d v(1, 2, 3);
   EXPECT_THAT(message([&] { Scene({.lattice = {{v, 2 * v, Vector3d::UnitX()}}}); }), HasSubstr("plane"));
   EXPECT_THAT(message([&] { Scene({.lattice = {{v, Vector3d::Constant(std::nan("")), v}}}); }), HasSubstr("finite"));
+}
+
+TEST(Scene, RefusesRaysAmongTooManyImages) {
+  // Bodies that are long beside the shortest lattice vector have hundreds of images at each place of a ray.
+  Scene scene({.lattice = {{Vector3d(0.01, 0, 0), Vector3d(0, 9, 0), Vector3d(0, 0, 9)}}});
+  scene.add(geom::Ellipsoid({4, 0.1, 0.1}), Pose());
+  scene.add(geom::Ellipsoid({4, 0.1, 0.1}), Pose::translation({0, 3, 3}));
+  EXPECT_TRUE(scene.ray_cast({0, 2, 2}, {0, -1, -1}, 1000).body);
+  EXPECT_FALSE(scene.ray_cast({0, 1, 1}, {1, 0, 0}, 10).body);
+  if (!full_form()) return;  // 1e8 images are looked at
+  EXPECT_THAT(message([&] { (void)scene.ray_cast({0, 1, 1}, {1, 0, 0}, 9000); }), HasSubstr("1e8 lattice vectors"));
 }
 
 }  // namespace

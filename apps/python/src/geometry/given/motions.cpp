@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -49,8 +50,12 @@ class HeldFunction {
 MotionBounds bounds_of(nb::handle value) {
   constexpr double kUnknown = std::numeric_limits<double>::infinity();
   std::array<double, 4> numbers_of{kUnknown, kUnknown, kUnknown, kUnknown};
-  const std::size_t count = nb::isinstance<nb::sequence>(value) ? nb::len(value) : 4;
-  numbers(value, "bounds", numbers_of.data(), count == 2 ? 2 : 4);
+  constexpr const char* kBoundNumbers = "2 or 4 real numbers";
+  const RealArray given(value, "bounds", kBoundNumbers);
+  if (given.shape().size() != 1 || (given.shape()[0] != 2 && given.shape()[0] != 4)) {
+    refuse_shape("bounds", given.shape(), kBoundNumbers);
+  }
+  std::copy_n(given.data(), given.shape()[0], numbers_of.begin());
   for (const double bound : numbers_of) {
     if (!(bound >= 0)) refuse_value("bounds", nb::cast<std::string>(nb::repr(value)), "numbers of 0 or more, or inf");
   }
@@ -197,11 +202,15 @@ void bind_given_motion(nb::module_& module) {
           "check",
           [](const GivenMotion& self, nb::handle begin, nb::handle end, nb::handle samples) {
             const double from = finite_number(begin, "begin"), to = finite_number(end, "end");
+            if (to < from) refuse_value("end", shown(to), "a time not before begin, " + shown(from));
             return check_given_motion(self, from, to, static_cast<int>(integer(samples, "samples", 2, 100000000)));
           },
           nb::arg("begin").none(), nb::arg("end").none(), nb::arg("samples").none() = 1000,
           nb::sig("def check(self, begin: float, end: float, samples: int = 1000) -> str"),
-          "Samples the motion and returns the first bound that it breaks, in words; empty if none, which is no proof.");
+          "Samples the motion and returns the first bound that it breaks, in words; empty if none, which is no proof.")
+      .def("__repr__", [](const GivenMotion& self) {
+        return "<GivenMotion: at time 0 " + nb::cast<std::string>(nb::repr(nb::cast(self.pose(0)))) + '>';
+      });
 }
 
 }  // namespace hardbody::python
