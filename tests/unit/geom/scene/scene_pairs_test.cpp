@@ -375,7 +375,10 @@ TEST(Scene, RefusesRaysAmongTooManyImages) {
   EXPECT_TRUE(scene.ray_cast({0, 2, 2}, {0, -1, -1}, 1000).body);
   EXPECT_FALSE(scene.ray_cast({0, 1, 1}, {1, 0, 0}, 10).body);
   if (!full_form()) return;  // 1e8 images are looked at
-  EXPECT_THAT(message([&] { (void)scene.ray_cast({0, 1, 1}, {1, 0, 0}, 9000); }), HasSubstr("1e8 lattice vectors"));
+  EXPECT_THAT(message([&] {
+                (void)scene.ray_cast({0, 1, 1}, {1, 0, 0}, 9000);
+              }),
+              testing::HasSubstr("1e8 lattice vectors"));
 }
 
 }  // namespace
