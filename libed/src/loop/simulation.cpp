@@ -4,6 +4,7 @@
 #include "loop/checks.h"
 #include "loop/parts/kernel_trial.h"
 #include "neighbours/cell.h"
+#include "system/bounding_radii.h"
 
 #include <ed/archive_simulation.h>
 #include <ed/simulation.h>
@@ -98,6 +99,9 @@ void check_start(const System& system, const std::function<void()>& poll) {
   }
   check_species(system);
   internal::check_speeds(system);
+  // Before the audit, whose overlaps of a body with its own image would hide what is wrong.
+  const std::vector<double> radii = internal::bounding_radii(system);
+  internal::check_box(system, *std::max_element(radii.begin(), radii.end()));
   const Audit state = audit(system, poll);
   if (!state.finite) throw std::invalid_argument("a position, orientation or velocity is not finite");
   if (state.overlaps == 0 && state.unanswered == 0) return;
@@ -227,7 +231,7 @@ Simulation Simulation::restore(std::string_view state, const std::vector<Species
   System system;
   system.species = species;
   if (reader.value<std::string>() != internal::bytes_of(species)) {
-    throw std::invalid_argument("state: is one of other species; accepted: a state of the same species");
+    throw std::invalid_argument("state: is one of other species");
   }
   reader(system.box);
   internal::expect(reader, system.box > 0 && std::isfinite(system.box), "the box");

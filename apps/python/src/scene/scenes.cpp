@@ -8,6 +8,7 @@
 #include "geometry/options.h"
 #include "geometry/shapes.h"
 #include "scene/answers.h"
+#include "scene/arguments.h"
 #include "scene/bind.h"
 
 #include <ed/given/scene.h>
@@ -20,7 +21,6 @@
 
 #include <Eigen/Core>
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -34,66 +34,6 @@ namespace {
 
 using geom::BodyId;
 using geom::Pose;
-
-/// Largest number of handles.
-constexpr std::size_t kMostHandles = std::size_t{1} << 32;
-
-geom::SceneShape scene_shape(const ed::BodyShape& shape) {
-  return std::visit([](const auto& s) { return geom::SceneShape(s); }, geom_shape(shape));
-}
-
-const Pose& checked_pose(nb::handle value) {
-  return instance<Pose>(value, "pose");
-}
-
-BodyId handle_of(nb::handle value, const char* name) {
-  return static_cast<BodyId>(integer(value, name, 0, static_cast<long long>(kMostHandles) - 1));
-}
-
-std::vector<BodyId> handles_of(nb::handle value) {
-  const IndexRows rows(value, "bodies", 1);
-  std::vector<BodyId> bodies;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    bodies.push_back(static_cast<BodyId>(rows.at(k, 0, kMostHandles, "handles")));
-  }
-  return bodies;
-}
-
-geom::Filter filter_of(nb::handle group, nb::handle meets) {
-  constexpr long long kMost = 0xffffffffLL;
-  return {.group = static_cast<std::uint32_t>(integer(group, "group", 0, kMost)),
-          .meets = static_cast<std::uint32_t>(integer(meets, "meets", 0, kMost))};
-}
-
-/// Returns the lattice: None, the edge of a cube, or three vectors as rows.
-geom::Lattice lattice_of(nb::handle value) {
-  geom::Lattice lattice;
-  if (value.is_none()) return lattice;
-  if (nb::isinstance<nb::float_>(value) || nb::isinstance<nb::int_>(value)) {
-    return geom::Lattice::cube(positive(value, "lattice"));
-  }
-  constexpr const char* kLattices = "the edge of a cube, or finite numbers of shape (3, 3)";
-  const RealArray rows(value, "lattice", kLattices);
-  if (rows.shape() != std::vector<std::size_t>{3, 3}) refuse_shape("lattice", rows.shape(), kLattices);
-  for (std::size_t k = 0; k < 3; ++k) {
-    lattice.vectors[k] = Eigen::Vector3d::Map(rows.data() + 3 * k);
-    if (!lattice.vectors[k].allFinite()) refuse_value(entry("lattice", k), shown(lattice.vectors[k]), "finite numbers");
-  }
-  return lattice;
-}
-
-double margin_of(nb::handle value) {
-  const double margin = number(value, "margin");
-  if (!(margin >= 0) || !std::isfinite(margin)) refuse_value("margin", shown(margin), "a finite length of 0 or more");
-  return margin;
-}
-
-/// Length that may be infinite.
-double reach(nb::handle value, const char* name) {
-  const double length = number(value, name);
-  if (!(length >= 0)) refuse_value(name, shown(length), "a length of 0 or more, or inf");
-  return length;
-}
 
 /// geom::Scene and the number of calls that read it without the GIL; while there are any, changes are refused. All
 /// members are called with the GIL.

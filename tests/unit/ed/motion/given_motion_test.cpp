@@ -165,7 +165,7 @@ TEST(GivenMotion, RefusesBadInput) {
             }),
             "GivenMotion::spline: times are from -1.7e+308 to 1.7e+308; accepted: a finite duration");
   EXPECT_EQ(message_of([&] { return check_given_motion(GivenMotion::resting(X), -1.7e308, 1.7e308); }),
-            "GivenMotion: check_given_motion: from time -1.7e+308 to 1.7e+308; accepted: a finite duration");
+            "GivenMotion: the motion is checked from time -1.7e+308 to 1.7e+308; accepted: a finite duration");
   EXPECT_NE(message_of([&] { return GivenMotion::spline({0, 1}, {X, turned}); }).find("too large"), std::string::npos);
   EXPECT_NE(message_of([&] { return check_given_motion(GivenMotion::resting(X), 1, 0); }).find("times in order"),
             std::string::npos);
