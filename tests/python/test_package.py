@@ -178,7 +178,7 @@ def test_help_of_classes_lists_their_fields(kind):
         assert re.search(rf"\b{name}\b[\w, ]*: ", inspect.getdoc(kind)), name
 
 
-@pytest.mark.skipif(not is_installed, reason="other extensions may have debug information")
+@pytest.mark.skipif(sys.version_info >= (3, 13), reason="the module has another name there")
 def test_subinterpreters_are_refused():
     script = (
         "import _xxsubinterpreters as s; i = s.create()\n"
@@ -190,6 +190,7 @@ def test_subinterpreters_are_refused():
     assert "hardbody cannot be imported in a subinterpreter; accepted: the main interpreter" in done.stdout
 
 
+@pytest.mark.skipif(not is_installed, reason="other extensions may have debug information")
 def test_size_of_the_extension():
     assert pathlib.Path(_core.__file__).stat().st_size < 15_000_000
 

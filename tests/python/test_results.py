@@ -169,7 +169,7 @@ def test_plot(run, tmp_path):
         run.plot("energy")
     (tmp_path / "config.toml").write_text("")
     with pytest.raises(FileNotFoundError, match="has no curves to draw"):
-        hb.Run(tmp_path).plot()
+        hb.Run(tmp_path).plot("msd")
 
 
 @pytest.mark.parametrize(

@@ -258,6 +258,7 @@ def test_bad_scenes(bodies):
     for value, what in ((-1.0, "margin"), (np.nan, "margin"), ("x", "margin")):
         with pytest.raises((ValueError, TypeError), match=what):
             hb.Scene(margin=value)
+    assert hb.Scene(lattice=np.float32(3)).add(hb.Sphere(1), hb.Pose()) == 0
     for value in ([1, 0, 0], np.eye(2), [[1, 0, 0]], "cube"):
         with pytest.raises((ValueError, TypeError), match=r"^lattice .*; accepted: the edge of a cube, or finite num"):
             hb.Scene(lattice=value)

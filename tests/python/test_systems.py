@@ -155,7 +155,7 @@ def test_files_of_other_programs(caplog):
     assert hb.from_gsd(CASES / "m8_velocities.lammpstrj", 0, [(ball, 2)]).species[0].mass == 2
     with pytest.raises(ValueError, match="has no orientations"):
         hb.from_gsd(CASES / "m3_orientation_of_frame_0.gsd")
-    with pytest.raises(ValueError, match="^frame is 7; accepted: -3 to 2"):
+    with pytest.raises(ValueError, match="^frame is 7; accepted: -3 to 2 in "):
         hb.from_gsd(CASES / "m2_velocity_of_frame_0.gsd", 7)
     with pytest.raises(ValueError, match="frame is -4; accepted: -3 to 2"):
         hb.from_gsd(CASES / "m2_velocity_of_frame_0.gsd", -4)

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -146,8 +147,20 @@ std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids)
                      ids[static_cast<std::size_t>(audit.closest_i)], ids[static_cast<std::size_t>(audit.closest_j)]);
 }
 
+/// Throws InputError if a body could meet two images of another, whatever is mended.
+void check_images(const ed::System& system, const std::string& file) {
+  double largest = 0;
+  for (const ed::Species& species : system.species) largest = std::max(largest, ed::bounding_radius(species.shape));
+  if (system.box >= 4 * largest) return;
+  throw InputError(
+      fmt::format("{}: a box of {:g} is too short for bodies of bounding radius {:g}, which could meet two "
+                  "images of another; accepted: at least {:g}",
+                  file, system.box, largest, 4 * largest));
+}
+
 /// Removes overlaps if the config requests it; returns what was done.
 std::string mend(ed::System& system, const StartFile& start, const std::vector<double>& ids) {
+  check_images(system, start.file);
   const ed::Audit audit = ed::audit(system);
   if (!overlaps(audit)) return "";
   if (!start.mend) {

@@ -20,13 +20,13 @@ def plot_curves(curves: Mapping[str, Table], names: Sequence[str], title: str) -
     """Draws these plots of a report in one figure, side by side."""
     plots = {plot["id"]: plot for plot in _core.curve_plots()}
     known = [name for name, plot in plots.items() if plot["file"] in curves]
+    if not known:
+        raise FileNotFoundError(f"{title} has no curves to draw; accepted: a run whose results are written")
     for name in names:
         if not isinstance(name, str):
             raise TypeError(f"names: {shown(name)} is no plot of {title}; accepted: {', '.join(known)}")
         if name not in known:
             raise ValueError(f"names: {shown(name)} is no plot of {title}; accepted: {', '.join(known)}")
-    if not known:
-        raise FileNotFoundError(f"{title} has no curves to draw; accepted: a run whose results are written")
     chosen = [plots[name] for name in names or [name for name in _USUAL if name in known] or known[:1]]
     pyplot = required("matplotlib.pyplot", "matplotlib", "plot")
     columns = min(2, len(chosen))

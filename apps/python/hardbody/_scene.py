@@ -350,7 +350,8 @@ class Scene:
     def ray_cast(self, origin: ArrayLike, direction: ArrayLike, t_max: float = math.inf) -> SceneRayHit:
         """Returns the first body that origin + t direction, 0 <= t <= t_max, meets.
 
-        A periodic scene needs a t_max: rays of up to 1e6 times the shortest lattice vector are accepted there.
+        In a periodic scene rays may be 1e6 times as long as the shortest lattice vector, not counting what is beyond
+        all bodies along open directions, and may have 1e8 images on their way.
         """
         place, hit = self._scene.ray_cast(origin, direction, t_max)
         return SceneRayHit(place[0], place[1], hit)

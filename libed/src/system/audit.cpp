@@ -76,7 +76,7 @@ class PairsAudit {
     }
   }
 
-  /// Tries every image that bounding spheres allow, those of a body itself too: such boxes hold few bodies.
+  /// Tries every image of all pairs that bounding spheres allow, those of a body itself too.
   void all_images(const std::function<void()>& poll) {
     const double box = system_.box;
     if (2 * largest_ > kMostImagesAlong * box) {
@@ -86,12 +86,11 @@ class PairsAudit {
       throw std::invalid_argument(message.str());
     }
     for (int i = 0; i < system_.size(); ++i) {
-      internal::poll_at(i, poll);
-      for (int j = i; j < system_.size(); ++j) images(i, j);
+      for (int j = i; j < system_.size(); ++j) images(i, j, poll);
     }
   }
 
-  void images(int i, int j) {
+  void images(int i, int j, const std::function<void()>& poll) {
     const double box = system_.box, reach = size(i) + size(j) + margin_;
     Vector3d r = pose(j).position() - pose(i).position();
     for (int axis = 0; axis < 3; ++axis) r[axis] -= box * std::round(r[axis] / box);
@@ -102,7 +101,10 @@ class PairsAudit {
           const bool is_first_half = x != 0 ? x > 0 : y != 0 ? y > 0 : z > 0;
           if (i == j && !is_first_half) continue;  // an image and its opposite are one pair
           const Vector3d there = r + box * Vector3d(x, y, z);
-          if (there.norm() <= reach) add(i, j, there);
+          if (there.norm() > reach) continue;
+          add(i, j, there);
+          internal::poll_at(tried_, poll);
+          tried_ = (tried_ + 1) % 256;
         }
       }
     }
@@ -128,6 +130,7 @@ class PairsAudit {
   double margin_;
   std::vector<double> sizes_;
   double largest_ = 0;
+  int tried_ = 0;  ///< number of images that all_images has tried, modulo 256
   std::vector<geom::Pose> poses_;
 };
 
@@ -137,7 +140,8 @@ Audit audit(const System& system, const std::function<void()>& poll) {
   Audit result;
   result.minimum_distance = system.box;
   result.kinetic = kinetic_state(system);
-  result.finite = std::all_of(system.bodies.begin(), system.bodies.end(), is_finite);
+  const bool has_box = system.box > 0 && std::isfinite(system.box);
+  result.finite = has_box && std::all_of(system.bodies.begin(), system.bodies.end(), is_finite);
   if (result.finite) PairsAudit(system, result).run(poll);
   return result;
 }

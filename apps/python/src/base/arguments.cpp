@@ -55,7 +55,9 @@ nb::object find_attribute(nb::handle object, const char* name) {
 
 /// Returns whether a value is a number of another class, a Fraction or a Decimal, or an integer beyond double.
 bool is_number_object(nb::handle value) {
-  if (PyBool_Check(value.ptr()) || PyUnicode_Check(value.ptr()) || !has_attribute(value, "__float__")) return false;
+  if (PyBool_Check(value.ptr()) || PyUnicode_Check(value.ptr()) || PyType_Check(value.ptr()) ||
+      !has_attribute(value, "__float__"))
+    return false;
   return !has_attribute(value, "dtype") && !has_attribute(value, "__array__");
 }
 
@@ -63,8 +65,10 @@ double read_object(nb::handle value, const char* name) {
   const nb::object read = nb::steal(PyNumber_Float(value.ptr()));
   if (read.is_valid()) return PyFloat_AsDouble(read.ptr());
   nb::python_error error;
+  if (error.matches(PyExc_TypeError)) refuse_type(name, value, "a real number");
+  if (error.matches(PyExc_ValueError)) refuse_value(name, value_text(value), "a real number");
   if (!error.matches(PyExc_OverflowError)) throw error;
-  refuse_value(name, "beyond 1.8e308", "a real number");
+  refuse_value(name, "beyond the range of floats", "a real number from -1.8e308 to 1.8e308");
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 
 #include <nanobind/nanobind.h>
 
-#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -37,10 +36,10 @@ void set_os_error(const WriteError& error) {
   Py_XDECREF(reason);
 }
 
-/// Returns a message of the libraries with "Scene::move" as "Scene.move".
-std::string with_python_names(std::string message) {
-  for (std::size_t at = message.find("::"); at != std::string::npos; at = message.find("::", at)) {
-    message.replace(at, 2, ".");
+/// Returns a message of the libraries that begins with "Scene::move" as one that begins with "Scene.move".
+std::string with_python_name(std::string message) {
+  for (const char* const name : {"Scene::", "GivenMotion::"}) {
+    if (message.starts_with(name)) message.replace(std::strlen(name) - 2, 2, ".");
   }
   return message;
 }
@@ -56,7 +55,7 @@ void register_exceptions() {
     } catch (const WriteError& e) {
       set_os_error(e);
     } catch (const std::invalid_argument& e) {
-      set_error(PyExc_ValueError, with_python_names(e.what()).c_str());
+      set_error(PyExc_ValueError, with_python_name(e.what()).c_str());
     } catch (const std::bad_alloc&) {
       PyErr_SetString(PyExc_MemoryError, "hardbody: what this call computes does not fit into memory");
     }

@@ -51,7 +51,8 @@ geom::Filter filter_of(nb::handle group, nb::handle meets) {
 geom::Lattice lattice_of(nb::handle value) {
   geom::Lattice lattice;
   if (value.is_none()) return lattice;
-  if (nb::isinstance<nb::float_>(value) || nb::isinstance<nb::int_>(value)) {
+  const bool is_number = !attribute(value, "__float__").is_none() && attribute(value, "__len__").is_none();
+  if (is_number || (has_attribute(value, "ndim") && nb::cast<int>(value.attr("ndim")) == 0)) {
     return geom::Lattice::cube(positive(value, "lattice"));
   }
   constexpr const char* kLattices = "the edge of a cube, or finite numbers of shape (3, 3)";

@@ -12,9 +12,9 @@
 #include "scene/bind.h"
 
 #include <ed/given/scene.h>
+#include <ed/shape.h>
 #include <ed/time_of_contact.h>
 
-#include <geom/any_convex.h>
 #include <geom/scene.h>
 
 #include <nanobind/nanobind.h>

@@ -41,9 +41,11 @@ std::optional<std::int64_t> frame_number(nb::handle frame, const std::string& fi
       integer(frame, "frame", std::numeric_limits<std::int64_t>::min() + 1, std::numeric_limits<std::int64_t>::max());
   if (k == -1) return std::nullopt;
   const auto count = static_cast<std::int64_t>(open_frames(file)->frame_count());
-  if (k < -count || (k >= count && count > 0)) {
-    refuse_value("frame", std::to_string(k), "-" + std::to_string(count) + " to " + std::to_string(count - 1));
+  if (count > 0 && (k < -count || k >= count)) {
+    refuse_value("frame", std::to_string(k),
+                 "-" + std::to_string(count) + " to " + std::to_string(count - 1) + " in " + file);
   }
+  if (count == 0) return 0;  // reading it tells that the file has none
   return k < 0 ? count + k : k;
 }
 

@@ -222,6 +222,10 @@ TEST(Audit, TriesAllImagesInASmallBox) {
   EXPECT_EQ(alone.closest_i, 0);
   EXPECT_EQ(alone.closest_j, 0);
 
+  for (const double none : {0.0, std::numeric_limits<double>::quiet_NaN()}) {
+    system.box = none;
+    EXPECT_FALSE(ed::audit(system).finite);
+  }
   system.box = 0.2;
   EXPECT_THROW(static_cast<void>(ed::audit(system)), std::invalid_argument);
 }

@@ -207,10 +207,7 @@ void bind_given_motion(nb::module_& module) {
           },
           nb::arg("begin").none(), nb::arg("end").none(), nb::arg("samples").none() = 1000,
           nb::sig("def check(self, begin: float, end: float, samples: int = 1000) -> str"),
-          "Samples the motion and returns the first bound that it breaks, in words; empty if none, which is no proof.")
-      .def("__repr__", [](const GivenMotion& self) {
-        return "<GivenMotion: at time 0 " + nb::cast<std::string>(nb::repr(nb::cast(self.pose(0)))) + '>';
-      });
+          "Samples the motion and returns the first bound that it breaks, in words; empty if none, which is no proof.");
 }
 
 }  // namespace hardbody::python
