@@ -130,7 +130,7 @@ struct KineticState {
 /// Distances of all near pairs (bounding spheres that overlap, or are within a mean distance of that), and the kinetic
 /// state.
 struct Audit {
-  double minimum_distance;  ///< minimum over all pairs and images, < 0: overlap; box if none are near
+  double minimum_distance;  ///< minimum over the pairs and images that were tried, < 0: overlap; box if none are near
   int closest_i = -1;       ///< body of that distance; -1: none are near
   int closest_j = -1;       ///< the other one, >= closest_i; equal: a body and an image of it
   int overlaps = 0;         ///< pairs that overlap by more than kAuditOverlap allows
@@ -147,10 +147,11 @@ ED_EXPORT KineticState kinetic_state(const System& system);
 
 /// Checks a state from scratch by `geom::distance`, independently of the event loop. Distances are exact to 1e-13 times
 /// the pair's size (for bodies with flat faces or edges see geom/distance.h). In a box where a body could touch two
-/// images of another, or one of itself, all images are tried, each of which counts as a pair. Throws
-/// std::invalid_argument for a matrix that is not a rotation, and for a box below a quarter of the largest bounding
-/// radius; numbers that are not finite are reported, not thrown. Unless `poll` is empty it is called once every few
-/// hundred bodies; an exception that it throws ends the audit.
+/// images of another, or one of itself, all images are tried, each of which counts as a pair; elsewhere those with the
+/// nearest centres, the only ones that can overlap. Throws std::invalid_argument for a matrix that is not a rotation,
+/// and for a box below a quarter of the largest bounding radius; numbers that are not finite are reported, not thrown.
+/// Unless `poll` is empty it is called once every few hundred bodies or images; an exception that it throws ends the
+/// audit.
 ED_EXPORT Audit audit(const System& system, const std::function<void()>& poll = {});
 
 }  // namespace ed

@@ -35,7 +35,7 @@ class Placed {
   const Inner& inner() const { return inner_; }  ///< shape that is placed
   const Pose& pose() const { return X_BI_; }     ///< pose of that shape in the body's frame, X_BI
 
-  /// Returns the support height along n and the support point, body frame; n != 0, any length.
+  /// Returns the support height along n and the support point, body frame; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const {
     const Support s = inner_.support(X_BI_.rotation().transpose() * n);
     return {s.height + n.dot(X_BI_.position()), X_BI_.to_world(s.point)};
@@ -178,7 +178,7 @@ class GEOM_EXPORT AnyConvex {
   AnyConvex(const std::variant<Shapes...>& shape)  // NOLINT: a shape is one of any kind
       : AnyConvex(std::visit([](const auto& s) { return part_of(Pose(), 0, s); }, shape)) {}
 
-  /// Returns the support height along n and the support point, body frame; n != 0, any length.
+  /// Returns the support height along n and the support point, body frame; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const;
   /// Returns the Hessian of the support height, body frame.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const;

@@ -38,7 +38,7 @@ class GEOM_EXPORT Box {
   /// Returns whether a point is in the box or on its surface.
   bool contains(const Eigen::Vector3d& x) const { return (x.cwiseAbs().array() <= half_extents_.array()).all(); }
 
-  /// Returns h(n) = sum of half_extents_k |n_k| and a vertex; n != 0, any length.
+  /// Returns h(n) = sum of half_extents_k |n_k| and a vertex; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const { return kernel::core_support(core(), n); }
   /// Returns zero, the Hessian wherever no n_k is 0.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }
@@ -93,7 +93,7 @@ class GEOM_EXPORT ConvexPolyhedron {
   /// Returns whether a point is in the polyhedron or on its surface.
   bool contains(const Eigen::Vector3d& x) const;
 
-  /// Returns h(n) = max n.v over the vertices and that vertex; n != 0, any length.
+  /// Returns h(n) = max n.v over the vertices and that vertex; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const { return kernel::core_support(core(), n); }
   /// Returns zero, the Hessian wherever one vertex is the furthest.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& /*n*/) const { return Eigen::Matrix3d::Zero(); }

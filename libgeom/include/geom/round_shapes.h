@@ -38,7 +38,7 @@ class GEOM_EXPORT Sphere {
     return 2 / radius_ / radius_ * Eigen::Matrix3d::Identity();
   }
 
-  /// Returns h(n) = radius |n| and the support point radius n / |n|; n != 0, any length.
+  /// Returns h(n) = radius |n| and the support point radius n / |n|; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const { return kernel::swept_support(core(), n); }
   /// Returns hess h.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return kernel::ball_hessian(radius_, n); }
@@ -83,7 +83,8 @@ class GEOM_EXPORT Capsule {
   Eigen::Vector3d gradient(const Eigen::Vector3d& x) const;  ///< gradient of f
   Eigen::Matrix3d hessian(const Eigen::Vector3d& x) const;   ///< Hessian of f
 
-  /// Returns h(n) = half_length |n_z| + radius |n|, with a kink at n_z = 0, and the support point; n != 0, any length.
+  /// Returns h(n) = half_length |n_z| + radius |n|, with a kink at n_z = 0, and the support point; n as of
+  /// SupportShape.
   Support support(const Eigen::Vector3d& n) const { return kernel::swept_support(core(), n); }
   /// Returns hess h away from the kink, that of the ball.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return kernel::ball_hessian(radius_, n); }
@@ -130,7 +131,7 @@ class GEOM_EXPORT Cylinder {
   bool contains(const Eigen::Vector3d& x) const { return kernel::frustum_contains(core(), x); }
 
   /// Returns h(n) = half_length |n_z| + radius |(n_x, n_y)| and a point of a rim, or the middle of a face if n is along
-  /// z; n != 0, any length.
+  /// z; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const { return kernel::core_support(core(), n); }
   /// Returns hess h away from the kinks at n_z = 0 and along z: that of a rim.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return kernel::rim_hessian(core(), n); }
@@ -184,7 +185,7 @@ class GEOM_EXPORT Cone {
   bool contains(const Eigen::Vector3d& x) const { return kernel::frustum_contains(core(), x); }
 
   /// Returns h(n), the larger of the heights of apex and rim, and the apex, a point of the rim, or the middle of the
-  /// base if n is along -z; n != 0, any length.
+  /// base if n is along -z; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const { return kernel::core_support(core(), n); }
   /// Returns hess h away from its kinks: that of the rim, or zero.
   Eigen::Matrix3d support_hessian(const Eigen::Vector3d& n) const { return kernel::rim_hessian(core(), n); }

@@ -41,7 +41,7 @@ class Rounded {
     return text.str();
   }
 
-  /// Returns h(n) + radius |n| and the support point; n != 0, any length.
+  /// Returns h(n) + radius |n| and the support point; n as of SupportShape.
   Support support(const Eigen::Vector3d& n) const {
     Support s = inner_.support(n);
     const double length = n.norm();

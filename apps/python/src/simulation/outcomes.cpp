@@ -114,10 +114,12 @@ void bind_kinetic(nb::module_& module) {
 
 void bind_audit(nb::module_& module) {
   using ed::Audit;
-  nb::class_<Audit> type(module, "Audit", nb::is_weak_referenceable(),
-                         "Distances of all pairs of a state, all images included, computed from scratch.");
+  nb::class_<Audit> type(
+      module, "Audit", nb::is_weak_referenceable(),
+      "Overlaps of all pairs of a state, in all images, and the smallest distance, computed from scratch.");
   type.def_ro("minimum_distance", &Audit::minimum_distance,
-              "Smallest distance of all pairs, below 0 for an overlap; the box if no bodies are near each other.")
+              "Smallest distance of all pairs, of nearest images unless the box is short, below 0 for an overlap;\n"
+              "the box if no bodies are near each other.")
       .def_prop_ro(
           "closest_pair",
           [](const Audit& a) -> nb::object {
