@@ -94,7 +94,7 @@ class PairsAudit {
     const double box = system_.box, reach = size(i) + size(j) + margin_;
     Vector3d r = pose(j).position() - pose(i).position();
     for (int axis = 0; axis < 3; ++axis) r[axis] -= box * std::round(r[axis] / box);
-    const int most = static_cast<int>(reach / box + 0.5);
+    const int most = static_cast<int>(std::floor(reach / box + 0.5));
     for (int x = -most; x <= most; ++x) {
       for (int y = -most; y <= most; ++y) {
         for (int z = -most; z <= most; ++z) {
