@@ -11,7 +11,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <variant>
@@ -149,13 +148,14 @@ std::string overlap_text(const ed::Audit& audit, const std::vector<double>& ids)
 
 /// Throws InputError if a body could meet two images of another, whatever is mended.
 void check_images(const ed::System& system, const std::string& file) {
-  double largest = 0;
-  for (const ed::Species& species : system.species) largest = std::max(largest, ed::bounding_radius(species.shape));
-  if (system.box >= 4 * largest) return;
+  std::vector<ed::Component> components;
+  components.reserve(system.species.size());
+  for (const ed::Species& species : system.species) components.push_back({species, 1});
+  const double least = ed::smallest_box(components, ed::Neighbours::dilated);
+  if (system.box >= least * (1 - 1e-12)) return;
   throw InputError(
-      fmt::format("{}: a box of {:g} is too short for bodies of bounding radius {:g}, which could meet two "
-                  "images of another; accepted: at least {:g}",
-                  file, system.box, largest, 4 * largest));
+      fmt::format("{}: a box of {:g} is too short: a body could meet two images of another; accepted: at least {:g}",
+                  file, system.box, least));
 }
 
 /// Removes overlaps if the config requests it; returns what was done.

@@ -198,7 +198,7 @@ TEST(Audit, SeesOverlapsBeyondRoundingWhereverTheyAre) {
 }
 
 TEST(Audit, TriesAllImagesInASmallBox) {
-  // The rod touches the nearest image of the ball with its side, and overlaps the next one with its tip.
+  // The rod is apart from the nearest image of the ball, and its tip overlaps the next one.
   const Eigen::Matrix3d along = Eigen::AngleAxisd(std::atan2(0.6, 1.4), Vector3d::UnitZ()).toRotationMatrix();
   ed::System system{
       .box = 2.5,
