@@ -21,6 +21,7 @@ hardbody_test(finder_unit_test unit
   unit/ed/motion/given_motion_test.cpp
   unit/ed/motion/impulse_test.cpp
   unit/ed/vectors/overlapping_envelopes_test.cpp
+  unit/ed/vectors/displacements_test.cpp
   unit/ed/vectors/products_test.cpp
   unit/ed/motion/motion_test.cpp
   unit/ed/neighbours/lists_test.cpp

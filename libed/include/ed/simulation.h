@@ -210,8 +210,9 @@ class ED_EXPORT Simulation {
   /// Fills `snapshot` with all bodies at time().
   void sample(Snapshot& snapshot) const;
 
-  /// Fills `snapshot` with positions and velocities alone, in a fraction of the time: what belongs to orientations and
-  /// rotations is zero.
+  /// Fills `snapshot` with time, positions and velocities alone, in a fraction of the time. There are no rotations
+  /// then, and what else belongs to orientations keeps its values, or is zero where the snapshot was of another number
+  /// of bodies.
   void sample_translations(Snapshot& snapshot) const;
 
   /// Starts recording: collisions() will hold the next `number` collisions.

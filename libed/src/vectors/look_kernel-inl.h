@@ -7,12 +7,12 @@
 #pragma once
 
 #include "base/nearest_integer.h"
-#include "base/reduced_sincos.h"
 #include "contact/parabola_steps.h"
 #include "contact/rounding.h"
 #include "contact/sphere_window.h"
 #include "contact/support_curvature.h"
 #include "vectors/lanes-inl.h"
+#include "vectors/sincos-inl.h"
 
 #include <ed/tolerances.h>
 
@@ -30,19 +30,6 @@ constexpr int kMostSteps = 3;
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Pairs in motion
-
-/// Returns sine and cosine as sincos does, for |x| <= kLargestAngle.
-HWY_INLINE void sincos(Real x, Real& sin, Real& cos) {
-  const ReducedSinCos<Real> reduced = reduced_sincos(x);
-  const auto one = hn::Set(Bits(), std::uint64_t{1});
-  const auto quadrant = hn::BitCast(Bits(), reduced.shifted.v);
-  const auto odd = hn::MaskFromVec(hn::BitCast(Tag(), hn::Sub(hn::Zero(Bits()), hn::And(quadrant, one))));
-  const auto sin_sign = hn::BitCast(Tag(), hn::ShiftLeft<62>(hn::AndNot(one, quadrant)));
-  const auto cos_sign = hn::BitCast(Tag(), hn::ShiftLeft<62>(hn::AndNot(one, hn::Add(quadrant, one))));
-  const auto sign_bit = hn::SignBit(Tag());
-  sin = Real(hn::Xor(hn::IfThenElse(odd, reduced.cos.v, reduced.sin.v), hn::And(sin_sign, sign_bit)));
-  cos = Real(hn::Xor(hn::IfThenElse(odd, reduced.sin.v, reduced.cos.v), hn::And(cos_sign, sign_bit)));
-}
 
 template <bool kSpin>
 struct SpinAxis {
