@@ -153,9 +153,9 @@ class Case(unittest.TestCase):
         with open(self.path(name), "rb") as file:
             return file.read()
 
-    def hardbody(self, *arguments, timeout=120):
+    def hardbody(self, *arguments, timeout=120, **options):
         return subprocess.run(
-            [HARDBODY, *arguments], cwd=self.here, capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL
+            [HARDBODY, *arguments], cwd=self.here, capture_output=True, text=True, timeout=timeout, stdin=subprocess.DEVNULL, **options
         )
 
     def state_of(self, out):

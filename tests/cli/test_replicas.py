@@ -9,7 +9,9 @@ import glob
 import json
 import math
 import os
+import resource
 import signal
+import socket
 import subprocess
 import time
 
@@ -219,6 +221,84 @@ class Tasks(SweepCase):
         os.utime(lock, (old, old))
         self.assertEqual(self.task("point", "aspect_ratio=2").returncode, 0)
         self.assertFalse(os.path.exists(lock))
+
+    def test_hosts_of_one_name(self):
+        # A process of this number is not here, but on another host of this name, or on this one before it was booted.
+        self.plan(SMALL + ONE_KEY)
+        os.makedirs(self.path("out/aspect_ratio=2"), exist_ok=True)
+        lock = {"host": socket.gethostname(), "boot": "another", "namespace": "", "process": 2**22 + 1, "number": "x"}
+        self.write("out/aspect_ratio=2/task.lock", json.dumps(lock) + "\n")
+        result = self.task("point", "aspect_ratio=2")
+        self.assertEqual(result.returncode, 75)
+        self.assertIn("works on it", result.stderr)
+        old = time.time() - 200
+        os.utime(self.path("out/aspect_ratio=2/task.lock"), (old, old))
+        self.assertEqual(self.task("point", "aspect_ratio=2").returncode, 0)
+
+    def test_a_paused_task_keeps_its_run(self):
+        self.plan(LONG + ONE_KEY)
+        first = "aspect_ratio=0.5"
+        process = self.begin(first)
+        self.wait_for(lambda: os.path.exists(self.path(f"out/{first}/checkpoint.bin")), "a checkpoint")
+        os.kill(process.pid, signal.SIGSTOP)
+        lock = self.path(f"out/{first}/task.lock")
+        old = time.time() - 200
+        os.utime(lock, (old, old))
+        result = self.task("point", first)
+        self.assertEqual(result.returncode, 75)
+        self.assertIn("another hardbody process is using it", result.stderr)
+        self.assertTrue(os.path.exists(lock))
+        process.send_signal(signal.SIGTERM)
+        process.send_signal(signal.SIGCONT)
+        self.assertEqual(process.wait(timeout=60), 143)
+        self.assertTrue(self.summary(f"out/{first}")["interrupted"])
+
+    def test_signals_that_are_repeated(self):
+        # As a scheduler sends them, to the task and again, and as its run gets another one when the task ends.
+        self.plan(LONG + ONE_KEY)
+        first = "aspect_ratio=0.5"
+        process = self.begin(first)
+        self.wait_for(lambda: os.path.exists(self.path(f"out/{first}/checkpoint.bin")), "a checkpoint")
+        for _ in range(5):
+            process.send_signal(signal.SIGTERM)
+            time.sleep(0.02)
+        self.assertEqual(process.wait(timeout=60), 143)
+        self.assertEqual(process.stderr.read(), f"{first}: stopped, its state is saved\n")
+        self.assertTrue(self.summary(f"out/{first}")["interrupted"])
+        self.assertEqual(self.state(first)["status"], "stopped")
+
+    def test_what_a_sweep_could_not_complete(self):
+        # Memory was short, say: on another machine there is more.
+        text = LONG + ONE_KEY
+        process = self.start(text, "--jobs", "1")
+        self.wait_for(lambda: os.path.exists(self.path("out/aspect_ratio=0.5/checkpoint.bin")), "a checkpoint")
+        children = self.read(f"/proc/{process.pid}/task/{process.pid}/children").split()
+        os.kill(int(children[0]), signal.SIGKILL)
+        self.wait_for(lambda: self.state("aspect_ratio=0.5")["status"] == "failed", "the failure")
+        self.assertEqual(self.state("aspect_ratio=0.5")["message"], "ended by signal 9")
+        process.send_signal(signal.SIGTERM)
+        self.assertEqual(process.wait(timeout=60), 143)
+        self.assertEqual(self.task("collect").returncode, 75)
+        self.assertEqual(self.statuses(), ["failed", "stopped"])
+        plan = self.plan(text)
+        self.assertEqual([task["runs"] for task in plan["tasks"]], [["aspect_ratio=0.5", "aspect_ratio=2"]])
+
+    def test_failures_of_the_machine(self):
+        self.plan(SMALL + ONE_KEY)
+        for files in (4, 5, 6, 7):
+            limit = lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (files, files))
+            result = self.task("point", "aspect_ratio=2", preexec_fn=limit)
+            self.assertIn(result.returncode, (0, 2, 75), f"{files}: {result.stderr}")
+            if os.path.exists(self.path("out/aspect_ratio=2/state.json")):
+                self.assertNotEqual(self.state("aspect_ratio=2")["status"], "failed", files)
+        self.assertEqual(self.task("point", "aspect_ratio=2").returncode, 0)
+
+    def test_the_same_sweep_in_other_words(self):
+        self.plan(SMALL + ONE_KEY)
+        self.write("sweep.toml", SMALL.replace("number = 64\npacking_fraction = 0.2\n", "packing_fraction = 0.20\nnumber = 64\n")
+                   + ONE_KEY.replace("2]", "2.0]"))
+        self.assertEqual(self.task("point", "aspect_ratio=2").returncode, 0)
+        self.assertEqual(self.task("collect").returncode, 75)
 
     def test_time_limit(self):
         self.plan(LONG + ONE_KEY)

@@ -159,7 +159,7 @@ geom::SceneOptions scene_options(Input& input, double reach) {
     default:
       break;
   }
-  if (has_many_images(options.lattice, reach) && !input.is_one_in(8192)) options.lattice = {};
+  if (has_many_images(options.lattice, reach) && !input.is_one_in(65536)) options.lattice = {};
   return options;
 }
 

@@ -26,7 +26,7 @@ constexpr std::array kChanged = {SIGINT, SIGTERM, SIGHUP, SIGXCPU, SIGPIPE, SIGX
 void on_signal(int signal) {
   int none = 0;
   if (g_pending.compare_exchange_strong(none, signal)) return;
-  const bool again = signal == SIGHUP || signal == SIGXCPU || (signal == SIGINT && g_scopes > 0);
+  const bool again = signal != SIGINT || g_scopes > 0;
   if (again) return;
   std::signal(signal, SIG_DFL);
   (void)std::raise(signal);  // delivered when this handler returns

@@ -3,10 +3,10 @@
 namespace hardbody {
 
 /// Installs handlers by which the first SIGINT, SIGTERM, SIGHUP (the terminal is gone) or SIGXCPU (the allowed
-/// processor time is used up) only sets a flag, so that a run can save its state. A second SIGINT or SIGTERM kills the
-/// process. The other two are sent more than once for one cause, SIGXCPU each second. If SIGHUP was ignored, as with
-/// nohup, it remains ignored. A closed pipe on stdout or stderr (SIGPIPE), or a file longer than allowed (SIGXFSZ),
-/// does not end the run.
+/// processor time is used up) only sets a flag, so that a run can save its state. A second SIGINT kills the process.
+/// The others are sent more than once for one cause: SIGXCPU each second, SIGTERM by schedulers and dying parents. If
+/// SIGHUP was ignored, as with nohup, it remains ignored. A closed pipe on stdout or stderr (SIGPIPE), or a file longer
+/// than allowed (SIGXFSZ), does not end the run.
 void install_signal_handlers();
 
 /// Restores, when the last of these objects in the process ends, the handlers that were there before the first one: for

@@ -19,9 +19,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstddef>
-#include <exception>
 #include <filesystem>
+#include <new>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -107,13 +108,23 @@ std::optional<TaskEnd> Task::origin_of(std::size_t k) {
   PointRecord origin = state_.records()[*from];
   if (origin.status == PointStatus::pending) take_up_state(origin, directory_);
   if (origin.status == PointStatus::done) return std::nullopt;
-  if (origin.status == PointStatus::failed) {
+  if (is_over(origin)) {
     const std::string message = fmt::format("starts from {}, which failed", origin.directory);
-    state_.settle(k, PointStatus::failed, message);
+    state_.fail_for_good(k, message);
     state_.write_state(k);
     return TaskEnd{kFailedForGood, message};
   }
   return TaskEnd{kTryAgain, fmt::format("starts from {}, which is not done", origin.directory)};
+}
+
+/// Returns how a task ends whose run another process writes; nullopt if none does.
+std::optional<TaskEnd> used_elsewhere(const fs::path& run) {
+  try {
+    const DirectoryLock free(run, Sharing::alone, std::chrono::milliseconds(0));
+    return std::nullopt;
+  } catch (const InputError& error) {
+    return TaskEnd{kTryAgain, error.what()};
+  }
 }
 
 TaskEnd Task::run(std::size_t k) {
@@ -121,6 +132,10 @@ TaskEnd Task::run(std::size_t k) {
   const fs::path path = directory_ / record.directory;
   try {
     fs::create_directories(path);
+    // The lock of a task that was paused is stale, while the run that it has started may still be at work.
+    if (!has_task(path)) {
+      if (const auto busy = used_elsewhere(path)) return *busy;
+    }
     const TaskLock lock(path);
     state_.take_up(k);
     if (record.status == PointStatus::done || record.status == PointStatus::failed) {
@@ -128,18 +143,15 @@ TaskEnd Task::run(std::size_t k) {
       return record.status == PointStatus::done ? TaskEnd{} : TaskEnd{kFailedForGood, record.message};
     }
     if (const auto end = origin_of(k)) return *end;
-    try {
-      const DirectoryLock free(path, Sharing::alone, std::chrono::milliseconds(0));
-    } catch (const InputError& error) {
-      return {kTryAgain, error.what()};
-    }
+    if (const auto busy = used_elsewhere(path)) return *busy;
     return work_on(k, lock);
   } catch (const TaskLock::Held& held) {
     return {kTryAgain, fmt::format("{} works on it", held.holder)};
-  } catch (const WriteError& error) {
+  } catch (const std::runtime_error& error) {
+    // The machine has failed, not the run: a full disk, say, or no room for another process.
     return {kTryAgain, error.what()};
-  } catch (const fs::filesystem_error& error) {
-    return {kTryAgain, error.what()};
+  } catch (const std::bad_alloc&) {
+    return {kTryAgain, "not enough memory"};
   }
 }
 
@@ -167,21 +179,24 @@ TaskEnd Task::work_on(std::size_t k, const TaskLock& lock) {
 
 TaskEnd Task::judged(std::size_t k, const WorkerEnd& end) {
   const bool stopped = stopped_by_signal(end.status);
-  if (stopped || end.status > 128) {
+  if (stopped || end.killed) {
     state_.settle(k, PointStatus::stopped, "");
     state_.write_state(k);
-    if (stopped && signal() != 0) {
-      // A start that has not ended has no state.
-      const bool saved = fs::exists(directory_ / state_.records()[k].directory / kCheckpointFile);
-      return {exit_status_of(signal()), saved ? "stopped, its state is saved" : "stopped during its start"};
-    }
-    return {kTryAgain, fmt::format("ended by signal {}", end.status - 128)};
+    const std::string by_signal = fmt::format("ended by signal {}", end.status - 128);
+    if (signal() == 0) return {kTryAgain, by_signal};
+    // A start that has not ended has no state.
+    const bool begun = fs::exists(directory_ / state_.records()[k].directory / kCheckpointFile);
+    return {exit_status_of(signal()), end.killed ? by_signal + ", its last checkpoint continues"
+                                      : begun    ? "stopped, its state is saved"
+                                                 : "stopped during its start"};
   }
   state_.end(k, end);
   const PointRecord& record = state_.records()[k];
   const std::string message = record.message;
-  const bool try_again = record.status == PointStatus::failed && message.find(kNotWritten) != std::string::npos;
+  const bool of_the_machine = end.status == Workers::kNotStarted || message.find(kNotWritten) != std::string::npos;
+  const bool try_again = record.status == PointStatus::failed && of_the_machine;
   if (try_again) state_.settle(k, PointStatus::stopped, message);
+  if (record.status == PointStatus::failed) state_.fail_for_good(k, message);
   state_.write_state(k);
   if (record.status == PointStatus::done) return {};
   return {try_again ? kTryAgain : kFailedForGood, message};

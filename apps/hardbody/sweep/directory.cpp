@@ -82,8 +82,15 @@ DirectoryLock share_directory(const fs::path& directory, const SweepFile& sweep)
   DirectoryLock lock(directory, Sharing::shared);
   const std::string stored = read_file(directory / kSweepFile, kLongestStoredSweep);
   if (stored == stored_text(sweep, directory)) return lock;
-  check_same_sweep(directory, sweep);
-  throw plan_first("holds this sweep with fewer points or replicas");
+  const std::string name = (directory / kSweepFile).string();
+  const SweepFile held = parse_sweep(stored, name, directory);
+  check_continues(held, sweep, directory);
+  try {
+    check_continues(sweep, held, directory);
+  } catch (const InputError&) {
+    throw plan_first("holds this sweep with fewer points or replicas");
+  }
+  return lock;
 }
 
 }  // namespace hardbody

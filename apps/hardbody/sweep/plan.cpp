@@ -63,6 +63,7 @@ void judge(const SweepFile& sweep, PointRecord& record) {
   } catch (const InputError& error) {
     record.message = error.what();
     record.status = PointStatus::failed;
+    record.for_good = true;
   }
 }
 
@@ -78,6 +79,7 @@ std::vector<PointRecord> planned(const SweepFile& sweep) {
     records[k].cost = first.cost;
     records[k].message = first.message;
     records[k].status = first.status;
+    records[k].for_good = first.for_good;
   }
   const auto failed = [](const PointRecord& record) { return record.status == PointStatus::failed; };
   // No point can be run: an error of the sweep, not of its points.
@@ -91,11 +93,13 @@ void take_up(PointRecord& record, const std::filesystem::path& directory) {
     record.results = finished_results(directory / record.directory);
   } catch (const std::exception& error) {
     record.status = PointStatus::failed;
+    record.for_good = true;
     record.message = error.what();
     return;
   }
   if (!record.results) return;
   record.status = record.results->sound ? PointStatus::done : PointStatus::failed;
+  record.for_good = !record.results->sound;
   record.message = record.results->sound ? "" : "NOT SOUND, see log.txt";
 }
 
@@ -109,6 +113,7 @@ void take_up_state(PointRecord& record, const std::filesystem::path& directory) 
     if (state.value("status", "") != to_string(status)) continue;
     record.status = status;
     record.message = state.value("message", "");
+    record.for_good = state.value("for_good", false);
   }
 }
 

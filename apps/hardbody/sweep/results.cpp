@@ -101,6 +101,10 @@ std::optional<PointResults> finished_results(const std::filesystem::path& direct
   }
 }
 
+bool is_over(const PointRecord& record) {
+  return record.status == PointStatus::done || (record.status == PointStatus::failed && record.for_good);
+}
+
 std::string state_json(const PointRecord& record, int replicas) {
   Json json = {{"name", record.directory}};
   json["keys"] = Json::object();
@@ -108,6 +112,7 @@ std::string state_json(const PointRecord& record, int replicas) {
   json["seed"] = record.seed;
   if (replicas > 1) json["replica"] = record.replica;
   json["status"] = to_string(record.status);
+  if (record.status == PointStatus::failed) json["for_good"] = record.for_good;
   json["message"] = record.message;
   return json.dump(2) + "\n";
 }

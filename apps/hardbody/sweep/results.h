@@ -51,11 +51,15 @@ struct PointRecord {
   std::int64_t seed = 1;
   std::optional<std::size_t> starts_from;  ///< index of another record, whose last state it compresses
   PointStatus status = PointStatus::pending;
-  std::string message;  ///< reason for the failure
-  std::string note{};   ///< disagreement of replicas, for a point that is done
+  bool for_good = false;  ///< true if a run that has failed would fail again
+  std::string message;    ///< reason for the failure
+  std::string note{};     ///< disagreement of replicas, for a point that is done
   std::optional<PointResults> results;
   std::optional<Cost> cost{};  ///< cost by the config; nullopt if that is invalid
 };
+
+/// Returns whether nothing is to do: the run is done, or has failed for good.
+bool is_over(const PointRecord& record);
 
 /// Returns the results of the run in `directory` if it is complete. Throws std::runtime_error if its summary is
 /// invalid.

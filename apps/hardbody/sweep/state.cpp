@@ -28,8 +28,14 @@ void SweepState::take_up(std::size_t k) {
 
 void SweepState::settle(std::size_t k, PointStatus status, const std::string& message) {
   records_[k].status = status;
+  records_[k].for_good = false;
   records_[k].message = message;
   changed_[k / static_cast<std::size_t>(replicas_)] = true;
+}
+
+void SweepState::fail_for_good(std::size_t k, const std::string& message) {
+  settle(k, PointStatus::failed, message);
+  records_[k].for_good = true;
 }
 
 void SweepState::end(std::size_t k, const WorkerEnd& end) {
@@ -44,6 +50,8 @@ void SweepState::end(std::size_t k, const WorkerEnd& end) {
     settle(k, PointStatus::done, "");
     return;
   }
+  if (end.status == Workers::kNotStarted) message = "its process could not be started";
+  if (message.empty() && end.killed) message = fmt::format("ended by signal {}", end.status - 128);
   if (message.empty()) message = fmt::format("ended with exit status {}", end.status);
   settle(k, PointStatus::failed, message);
 }
@@ -77,9 +85,8 @@ std::size_t SweepState::count(PointStatus status) {
 }
 
 bool SweepState::is_over() const {
-  return std::all_of(records_.begin(), records_.end(), [](const PointRecord& r) {
-    return r.status == PointStatus::done || r.status == PointStatus::failed;
-  });
+  return std::all_of(records_.begin(), records_.end(),
+                     [](const PointRecord& record) { return hardbody::is_over(record); });
 }
 
 std::string SweepState::account() {

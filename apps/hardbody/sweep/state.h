@@ -26,6 +26,8 @@ class SweepState {
   /// Takes over the results of run k, whose process has ended by itself: it is done or failed.
   void end(std::size_t k, const WorkerEnd& end);
   void settle(std::size_t k, PointStatus status, const std::string& message);
+  /// Settles run k as failed in a way that another attempt would repeat.
+  void fail_for_good(std::size_t k, const std::string& message);
 
   /// Writes state.json of run k. Throws WriteError.
   void write_state(std::size_t k) const;
@@ -34,7 +36,8 @@ class SweepState {
 
   /// Returns the number of points with this status.
   std::size_t count(PointStatus status);
-  /// Returns whether all runs are done or failed. A point with a failed replica has failed though others may be to do.
+  /// Returns whether all runs are done or have failed for good. A point with a failed replica has failed though others
+  /// may be to do.
   bool is_over() const;
   /// Returns how many points are done, and a line for each that has failed.
   std::string account();

@@ -26,7 +26,6 @@ namespace {
 /// Path of the running program itself, even if another one has been installed under its name since.
 constexpr const char* kThisProgram = "/proc/self/exe";
 constexpr int kMostJobs = 1024;
-constexpr int kNotStarted = 127;
 constexpr int kClosed = -1;              ///< descriptor that poll() ignores
 constexpr int kSilentLook = 10;          ///< milliseconds between two looks at processes that have closed their stderr
 constexpr std::size_t kMostSaid = 4096;  ///< bytes of stderr that are kept
@@ -48,7 +47,7 @@ std::runtime_error cannot_start(int error) {
                      ::dup2(nothing, STDIN_FILENO) >= 0 && ::dup2(nothing, STDOUT_FILENO) >= 0 &&
                      ::dup2(errors, STDERR_FILENO) >= 0;
   if (ready) (void)::execv(program, arguments);
-  ::_exit(kNotStarted);
+  ::_exit(Workers::kNotStarted);
 }
 
 std::string last_line(std::string_view text) {
@@ -143,7 +142,7 @@ std::vector<WorkerEnd> Workers::ended(int milliseconds) {
     if (ended != worker.process && !lost) return false;
     take_what_it_says(worker);
     if (worker.errors != kClosed) ::close(worker.errors);
-    ends.push_back({worker.id, exit_status(status), last_line(worker.said)});
+    ends.push_back({worker.id, exit_status(status), WIFSIGNALED(status), last_line(worker.said)});
     return true;
   });
   return ends;

@@ -20,6 +20,7 @@ int jobs_on_this_machine(const std::optional<int>& jobs);
 struct WorkerEnd {
   int id = 0;             ///< id given to start()
   int status = 0;         ///< exit status, or 128 + the signal that ended it
+  bool killed = false;    ///< true if a signal ended it, before it could save its state
   std::string last_line;  ///< last line on stderr, which gives the reason of a failure
 };
 
@@ -28,6 +29,9 @@ struct WorkerEnd {
 /// and it gets SIGTERM if this process dies.
 class Workers {
  public:
+  /// Exit status of a process that the system could create, but not give the program.
+  static constexpr int kNotStarted = 127;
+
   /// Names the program and its first arguments; by default it is the running program itself.
   explicit Workers(std::vector<std::string> program = {});
   ~Workers();  ///< ends running processes by SIGTERM, and waits for them

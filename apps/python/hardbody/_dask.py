@@ -78,6 +78,7 @@ def _stands(mark: Path) -> bool:
 
 def _ended(command: list[str], mark: Path) -> tuple[int, str]:
     """Runs a command, which is stopped when the file is gone. Returns its exit status and what it has said."""
+    told = False
     with subprocess.Popen(
         command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
     ) as process:
@@ -86,8 +87,9 @@ def _ended(command: list[str], mark: Path) -> tuple[int, str]:
                 said = process.communicate(timeout=_LOOK)[1]
                 return process.returncode, said
             except subprocess.TimeoutExpired:
-                if not _stands(mark):
+                if not told and not _stands(mark):
                     process.terminate()
+                    told = True
 
 
 def run_tasks(client: Any, directory: str, plan: str, progress: Progress | None) -> list[str]:

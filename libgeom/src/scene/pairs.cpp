@@ -7,7 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace geom {
 
@@ -97,6 +100,22 @@ bool declined(const DistanceResult& result) {
   return result.status != DistanceStatus::separated && result.status != DistanceStatus::overlapping;
 }
 
+/// Calls fill(first, found) for blocks of `number` candidates, which sets what it finds of candidates first, first + 1,
+/// .. Returns what is to be kept: memory grows with that, not with the candidates.
+template <class Found, class Fill, class Keep>
+std::vector<Found> answers_of(std::size_t number, int threads, const Fill& fill, const Keep& keep) {
+  constexpr std::size_t kRound = std::size_t{1} << 18;  // candidates at a time
+  std::vector<Found> answers, found;
+  for (std::size_t begin = 0; begin < number; begin += kRound) {
+    found.resize(std::min(kRound, number - begin));
+    scene::in_blocks(found.size(), kBlock, threads, [&](std::size_t first, std::size_t last) {
+      fill(begin + first, std::span(found).subspan(first, last - first));
+    });
+    std::copy_if(found.begin(), found.end(), std::back_inserter(answers), keep);
+  }
+  return answers;
+}
+
 }  // namespace
 
 void Scene::pairs_within(double cutoff, std::vector<ScenePair>& out, const DistanceOptions& options,
@@ -104,31 +123,30 @@ void Scene::pairs_within(double cutoff, std::vector<ScenePair>& out, const Dista
   check_cutoff(cutoff);
   scene::check_threads(threads);
   const std::vector<Candidate> pairs = bodies_->candidates(cutoff);
-  std::vector<ScenePair> found(pairs.size());
   const auto body_of = [this](std::int32_t item) -> const Body& { return bodies_->at(item); };
-  scene::in_blocks(pairs.size(), kBlock, threads, [&](std::size_t first, std::size_t last) {
+  const auto find = [&](std::size_t first, std::span<ScenePair> found) {
     BlockOfPairs block(bodies_->images, cutoff, options);
-    block.run(std::span(pairs).subspan(first, last - first), body_of, std::span(found).subspan(first, last - first));
+    block.run(std::span(pairs).subspan(first, found.size()), body_of, found);
+  };
+  out = answers_of<ScenePair>(pairs.size(), threads, find, [&](const ScenePair& pair) {
+    return declined(pair.result) || pair.result.distance <= cutoff;
   });
-  std::erase_if(found,
-                [&](const ScenePair& pair) { return !declined(pair.result) && !(pair.result.distance <= cutoff); });
-  out.swap(found);
 }
 
 void Scene::overlapping_pairs(std::vector<SceneOverlap>& out, int threads) const {
   scene::check_threads(threads);
   const std::vector<Candidate> pairs = bodies_->candidates(0);
-  std::vector<SceneOverlap> found(pairs.size());
-  scene::in_blocks(pairs.size(), kBlock, threads, [&](std::size_t first, std::size_t last) {
-    for (std::size_t k = first; k < last; ++k) {
-      const Body& i = bodies_->at(pairs[k].i);
-      const Body& j = bodies_->at(pairs[k].j);
-      const Vector3d image = bodies_->images.vector(pairs[k].cell);
+  const auto find = [&](std::size_t first, std::span<SceneOverlap> found) {
+    for (std::size_t k = 0; k < found.size(); ++k) {
+      const Candidate& pair = pairs[first + k];
+      const Body& i = bodies_->at(pair.i);
+      const Body& j = bodies_->at(pair.j);
+      const Vector3d image = bodies_->images.vector(pair.cell);
       found[k] = {i.id, j.id, image, scene::overlap(i.shape, i.X_WB, j.shape, kernel::moved(j.X_WB, image))};
     }
-  });
-  std::erase_if(found, [](const SceneOverlap& pair) { return pair.answer == Answer::no; });
-  out.swap(found);
+  };
+  out = answers_of<SceneOverlap>(pairs.size(), threads, find,
+                                 [](const SceneOverlap& pair) { return pair.answer != Answer::no; });
 }
 
 void Scene::candidates(double cutoff,

@@ -9,10 +9,6 @@
 namespace hardbody {
 namespace {
 
-bool is_over(const PointRecord& record) {
-  return record.status == PointStatus::done || record.status == PointStatus::failed;
-}
-
 /// Returns the runs in an order in which each stands behind the one that it starts from, chain after chain. Single
 /// runs are a chain together: there, nothing depends on another.
 std::vector<std::vector<std::size_t>> chains_of(const std::vector<PointRecord>& records) {

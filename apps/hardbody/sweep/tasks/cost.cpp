@@ -15,6 +15,8 @@ namespace {
 
 /// Number of finished runs that a prediction is made of.
 constexpr std::size_t kNearest = 6;
+/// Number of finished runs that are compared, spread over all: plans of 10^5 runs would else take minutes.
+constexpr std::size_t kMostCompared = 1000;
 /// Distance within which runs count the same.
 constexpr double kNear = 0.02;
 
@@ -55,6 +57,11 @@ Costs::Costs(const std::vector<PointRecord>& records) : records_(records) {
     const bool finished = records[k].status == PointStatus::done && records[k].cost && seconds_of(records[k]);
     if (finished) finished_.push_back(k);
   }
+  if (finished_.size() <= kMostCompared) return;
+  std::vector<std::size_t> some;
+  some.reserve(kMostCompared);
+  for (std::size_t k = 0; k < kMostCompared; ++k) some.push_back(finished_[k * finished_.size() / kMostCompared]);
+  finished_ = std::move(some);
 }
 
 double Costs::distance(std::size_t a, std::size_t b) const {

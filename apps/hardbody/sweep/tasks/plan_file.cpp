@@ -26,14 +26,13 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLongestPlan = std::size_t{1} << 28;
 
 Json run_json(const PointRecord& record, const std::vector<PointRecord>& records, const std::optional<Cost>& cost) {
-  const bool over = record.status == PointStatus::done || record.status == PointStatus::failed;
   return {{"id", record.directory},
           {"point", record.point.name},
           {"replica", record.replica},
           {"seed", record.seed},
           {"status", to_string(record.status)},
           {"starts_from", record.starts_from ? Json(records[*record.starts_from].directory) : Json(nullptr)},
-          {"expected_seconds", cost && !over ? number_json(cost->seconds) : Json(nullptr)},
+          {"expected_seconds", cost && !is_over(record) ? number_json(cost->seconds) : Json(nullptr)},
           {"memory_bytes", cost ? number_json(cost->memory) : Json(nullptr)}};
 }
 

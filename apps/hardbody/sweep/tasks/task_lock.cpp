@@ -38,7 +38,7 @@ std::string host_name() {
   return name;
 }
 
-/// Distinguishes hosts of one name, and a host from itself before it was booted.
+/// Distinguishes hosts of one name. A host that was booted has a new one.
 std::string boot_id() {
   return first_line("/proc/sys/kernel/random/boot_id");
 }
@@ -117,9 +117,9 @@ double age_of(const fs::path& file) {
 
 /// Returns whether the process of a lock is known to have ended: it ran on this host.
 bool has_ended(const nlohmann::json& lock) {
-  if (lock.value("host", "") != host_name()) return false;
-  if (lock.value("boot", "") != boot_id()) return true;
-  if (lock.value("namespace", "") != process_namespace()) return false;
+  const bool here = lock.value("host", "") == host_name() && lock.value("boot", "") == boot_id() &&
+                    lock.value("namespace", "") == process_namespace();
+  if (!here) return false;
   const long process = lock.value("process", 0L);
   return (::kill(static_cast<::pid_t>(process), 0) != 0 && errno == ESRCH) ||
          start_of(process) != lock.value("start", "");

@@ -12,10 +12,10 @@ namespace hardbody {
 /// File in the directory of a run that names the task which works on it: host, process and a number of its own. A task
 /// creates it (O_EXCL, which file systems of clusters make atomic) and touches it every kHeartbeat.
 ///
-/// A lock is stale if its process is on this host and has ended, or if it was not touched for kStale. Ages are
-/// differences of times that the file server gave, so that clocks may differ. A stale lock is renamed, and whoever
-/// renamed the stale one may create the next. A process that was only paused finds another number in the file at its
-/// next heartbeat: it must end its run at once.
+/// A lock is stale if its process is on this host and has ended, or if it was not touched for kStale. Hosts may have
+/// the same name: one that was booted since counts as another. Ages are differences of times that the file server gave,
+/// so that clocks may differ. A stale lock is renamed, and whoever renamed the stale one may create the next. A process
+/// that was only paused finds another number in the file at its next heartbeat: it must end its run at once.
 class TaskLock {
  public:
   static constexpr std::chrono::seconds kHeartbeat{15};
