@@ -7,11 +7,11 @@
 /// | A                    | B          | distance (ed::distance)                 | pair gap   | bracketing |
 /// |----------------------|------------|-----------------------------------------|------------|------------|
 /// | (super)ellipsoids    | the same   | geom::distance of the two kinds         | SupportGap | yes        |
-/// | polytopes with balls | libgeom's  | geom::distance of the two kinds         | ConvexGap  | refused    |
+/// | cores with balls     | libgeom's  | geom::distance of the two kinds         | ConvexGap  | refused    |
 /// | a user's             | any        | PairDistance of A, of B, geom::distance | ConvexGap  | refused    |
 ///
-/// Polytopes with balls: capsules, boxes, polyhedra, rounded ones; spheres too, for which the bracketing finder has
-/// equations.
+/// Cores with balls swept over them: capsules, boxes, polyhedra, cylinders, cones, rounded ones; spheres too, for which
+/// the bracketing finder has equations.
 
 #include "contact/body_shapes.h"
 #include "contact/convex/gap.h"

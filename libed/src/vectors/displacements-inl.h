@@ -7,6 +7,8 @@
 
 #include "vectors/sincos-inl.h"
 
+#include <cstddef>
+
 HWY_BEFORE_NAMESPACE();
 namespace ed::internal {
 namespace {
@@ -22,12 +24,12 @@ HWY_INLINE Real3 load_positions(const double* at) {
 
 void set_displacements(const double* from, const double* to, const double* wave_numbers, int number, double* squares,
                        double* scattering) {
-  for (int i = 0; i < kDisplacementsAtATime; i += kLanes) {
+  for (std::ptrdiff_t i = 0; i < kDisplacementsAtATime; i += kLanes) {
     const Real3 moved = load_positions(to + 3 * i) - load_positions(from + 3 * i);
     const Real square = moved.squaredNorm();
     hn::StoreU(square.v, Tag(), squares + i);
     const Real r = sqrt(square);
-    for (int k = 0; k < number; ++k) {
+    for (std::ptrdiff_t k = 0; k < number; ++k) {
       const Real angle = wave_numbers[k] * r;
       Real sin, cos;
       sincos(angle, sin, cos);
