@@ -34,9 +34,15 @@ double whole_multiple(double interval, std::uint64_t k) {
 }
 
 std::unique_ptr<FrameFile> writer_of(TrajectoryFormat format, const RunDirectory& directory, std::uint64_t capacity) {
-  if (format == TrajectoryFormat::gsd) return std::make_unique<GsdWriter>(directory.file(kGsdFile), capacity);
-  if (format == TrajectoryFormat::lammps) return std::make_unique<LammpsWriter>(directory.file(kLammpsFile));
-  return std::make_unique<VtkWriter>(directory.file(kVtkFile), capacity);
+  switch (format) {
+    case TrajectoryFormat::gsd:
+      return std::make_unique<GsdWriter>(directory.file(kGsdFile), capacity);
+    case TrajectoryFormat::lammps:
+      return std::make_unique<LammpsWriter>(directory.file(kLammpsFile));
+    case TrajectoryFormat::vtk:
+      return std::make_unique<VtkWriter>(directory.file(kVtkFile), capacity);
+  }
+  throw std::logic_error("a trajectory format without a writer");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "cores/contact.h"
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -9,8 +10,19 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
+/// Largest rounding of the square of a unit normal.
+constexpr double kUnitNormal = 1e-12;
+
 bool is_line(const CoreView& core) {
   return core.kind == CoreKind::point || core.kind == CoreKind::segment;
+}
+
+/// Returns a rotation or vector without the components that are nothing beside the largest one. No distance changes by
+/// them, but products that they alone make nonzero may underflow and have no direction.
+template <class Matrix>
+Matrix without_dust(const Matrix& of) {
+  constexpr double kDust = 1e-100;
+  return (of.array().abs() < kDust * of.cwiseAbs().maxCoeff()).select(0, of);
 }
 
 CoreContact contact_of(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB,
@@ -25,9 +37,9 @@ CoreContact contact_of(const CoreView& a, const Matrix3d& R_WA, const CoreView& 
   if (a.kind == CoreKind::frustum || b.kind == CoreKind::frustum) {
     if (b.kind == CoreKind::point) return frustum_point_contact(a, R_WA, r);
     if (a.kind == CoreKind::point) return exchanged(frustum_point_contact(b, R_WB, -r), r);
-    return round_contact(a, R_WA, b, R_WB, r, start);
+    return round_contact(a, without_dust(R_WA), b, without_dust(R_WB), without_dust(r), without_dust(start));
   }
-  return polytope_contact(a, R_WA, b, R_WB, r, start);
+  return polytope_contact(a, without_dust(R_WA), b, without_dust(R_WB), without_dust(r), without_dust(start));
 }
 
 /// Returns the point of a core, without its ball, that is closest to x.
@@ -90,6 +102,7 @@ DistanceResult core_distance(const CoreView& a, const Pose& X_WA, const CoreView
   if (!(bound <= (c.depth_error > 0 ? kWidestGap : kBoundGap) * size) || !(c.depth_error <= kWidestDepthGap * size)) {
     return result;
   }
+  if (!(std::abs(c.n.squaredNorm() - 1) <= kUnitNormal)) return result;
   result.distance = (c.lower - a.radius) - b.radius;
   result.normal = c.n;
   const Vector3d gap = c.b - c.a;

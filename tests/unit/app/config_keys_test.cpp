@@ -102,6 +102,30 @@ TEST(ConfigKeys, RefuseAValueOfNoKindNamingWhatIsAccepted) {
   }
 }
 
+TEST(ConfigKeys, AreReadWhereverTheyMayStand) {
+  // A date is a value of no kind: a key that takes it has not been read.
+  for (const Key& key : hardbody::keys()) {
+    const std::string name(key.name);
+    if (name.starts_with("species.")) continue;  // read with those of the shape
+    std::map<std::string, std::map<std::string, std::string>> sections = {{"system", {{"packing_fraction", "0.1"}}},
+                                                                          {"shape", {{"aspect_ratio", "2"}}}};
+    const std::size_t dot = name.find('.');
+    const std::string section = dot == std::string::npos ? "" : name.substr(0, dot);
+    sections[section][dot == std::string::npos ? name : name.substr(dot + 1)] = "1979-05-27";
+    std::string text;
+    for (const auto& [head, entries] : sections) {
+      if (!head.empty()) text += "[" + head + "]\n";
+      for (const auto& [entry, value] : entries) text += entry + " = " + value + "\n";
+    }
+    try {
+      (void)hardbody::parse_config(text, "memory");
+      ADD_FAILURE() << name << " is accepted and not read";
+    } catch (const hardbody::InputError& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr(name)) << text;
+    }
+  }
+}
+
 TEST(ConfigKeys, AreComparedByTheirValues) {
   const auto parse = [](const std::string& more) { return hardbody::parse_config(kOneShape + more, "memory"); };
   const Config config = parse("");
