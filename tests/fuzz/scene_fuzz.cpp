@@ -165,6 +165,8 @@ geom::SceneOptions scene_options(Input& input, double reach) {
       break;
   }
   if (has_many_images(options.lattice, reach) && !input.is_one_in(65536)) options.lattice = {};
+  // Boxes that are so much larger than the bodies overlap millions of images.
+  options.margin = std::min(options.margin, 2 * reach);
   return options;
 }
 
@@ -202,6 +204,7 @@ void ask_contact(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X
   };
   const double from = input.byte() % 4 == 0 ? input.coordinate() : 0, to = from + input.length();
   const ed::GivenMotion motion_a = motion(input, X_WA), motion_b = motion(input, X_WB);
+  if (are_slow(a, motion_a.pose(from), b, motion_b.pose(from), input)) return;
   check_contact(ed::time_of_contact(moving(a), motion_a, moving(b), motion_b, from, to, {.max_evaluations = 16}), from,
                 to);
 }
@@ -260,6 +263,9 @@ void ask_scene(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
       const double to = input.length();
       if (is_periodic(scene) && !input.is_one_in(512)) break;  // millions of images
       const std::vector<ed::MovingBody> moving{{bodies[0], motion(input, X_WA)}};
+      const Pose X_W0 = moving[0].motion.pose(0);
+      if (are_slow(a, X_W0, b, X_WB, input)) break;
+      if (bodies.size() > 2 && are_slow(a, X_W0, a, scene.pose(bodies[2]), input)) break;
       check_contact(ed::first_contact(scene, moving, 0, to, {.max_evaluations = 16}).contact, 0, to);
     }
   }

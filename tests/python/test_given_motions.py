@@ -112,6 +112,12 @@ def test_bad_input():
     for wrong in ((1, 0, 0), (1,), 3):
         with pytest.raises(ValueError, match=r"^bounds has shape .*; accepted: 2 or 4 real numbers"):
             hb.GivenMotion(along_x(abs), wrong)
+    for bounds in [(np.inf, 0), (0, np.inf), (np.inf, 0, 1, 1)]:
+        with pytest.raises(ValueError, match=r"^bounds is .*inf.*; accepted: finite speeds; accelerations may be inf"):
+            hb.GivenMotion(lambda t: hb.Pose(), bounds)
+    assert hb.GivenMotion(lambda t: hb.Pose(), (0, 0, np.inf, np.inf)).bounds(0, 1) == (0, 0, np.inf, np.inf)
+    with pytest.raises(TypeError, match=r"^poses\[1\] is None"):
+        hb.GivenMotion.spline([0, 1], [hb.Pose(), None])
     with pytest.raises(ValueError, match=r"^GivenMotion\.spline: 3 times and 2 poses"):
         hb.GivenMotion.spline([0, 1, 2], [hb.Pose(), hb.Pose()])
     with pytest.raises(ValueError, match="a scale is -1"):

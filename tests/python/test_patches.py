@@ -16,7 +16,8 @@ def test_boxes_that_lie_on_each_other():
     assert np.allclose(patch.point_a - patch.point_b, [0, 0, 0.1], atol=1e-13)
     tilted = hb.contact_patch(box, hb.Pose(), box, hb.Pose.normalized([0.5, 0.25, 1.9], [1, 1e-7, 2e-7, 0]))
     assert set(tilted.id) == set(patch.id)
-    assert hb.contact_patch(box, hb.Pose(), box, hb.Pose([0, 0, 3]), 0.9).kind == "empty"
+    empty = hb.contact_patch(box, hb.Pose(), box, hb.Pose([0, 0, 3]), 0.9)
+    assert empty.kind == "empty" and len(empty.depth) == 0 and np.isnan(empty.centre).all()
 
 
 def test_half_spaces_and_shapes_written_in_python():

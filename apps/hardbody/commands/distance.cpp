@@ -60,7 +60,7 @@ std::string distance_help() {
                spheres
   seed         starting points of these two methods: {} (the default is the first)
   penetration  answer of the dual method for deep overlaps: "global" (the default), the shortest of all translations
-               that separate the bodies, or "local", a stationary one, mostly found 10 to 75 times faster
+               that separate the bodies, or "local", a stationary one, found 10 to 75 times faster for most smooth bodies
   id           any JSON, returned with the answer
   query        "distance" (the default), or one of these, without method and seed; "gradient" and "patch" take penetration:
     "gradient"         a, b: adds gradient and hessian of the distance by x = (dp_a, dtheta_a, dp_b, dtheta_b), small

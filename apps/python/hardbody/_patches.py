@@ -25,7 +25,7 @@ class ContactPatch(Comparable):
     at: DistanceResult of the bodies, whose normal it is.
     kind: "polygon", "segment", "point", or "empty": the surfaces are further apart everywhere, or there is no distance.
     area: area of a polygon, else 0.
-    centre: centroid, halfway between the surfaces, shape (3,).
+    centre: centroid, halfway between the surfaces, shape (3,); NaN if the patch is empty.
     error: greatest distance of the outline from the patch's own (length).
     point_a, point_b: corners on the surfaces, anticlockwise about the normal, world frame, shape (K, 3).
     depth: height of A's surface above that of B at each corner, shape (K,); negative where they are apart.

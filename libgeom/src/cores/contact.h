@@ -56,6 +56,14 @@ inline Eigen::Vector3d accurate_cross(const Eigen::Vector3d& u, const Eigen::Vec
           difference(u.x(), v.y(), u.y(), v.x())};
 }
 
+/// Returns a rotation or vector without the components that are nothing beside the largest one. No distance changes by
+/// them, but products that they alone make nonzero may underflow and have no direction.
+template <class Matrix>
+Matrix without_dust(const Matrix& of) {
+  constexpr double kDust = 1e-100;
+  return (of.array().abs() < kDust * of.cwiseAbs().maxCoeff()).select(0, of);
+}
+
 /// Returns a unit vector across a unit vector.
 inline Eigen::Vector3d any_across(const Eigen::Vector3d& u) {
   return u.unitOrthogonal();

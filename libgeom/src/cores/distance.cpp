@@ -17,14 +17,6 @@ bool is_line(const CoreView& core) {
   return core.kind == CoreKind::point || core.kind == CoreKind::segment;
 }
 
-/// Returns a rotation or vector without the components that are nothing beside the largest one. No distance changes by
-/// them, but products that they alone make nonzero may underflow and have no direction.
-template <class Matrix>
-Matrix without_dust(const Matrix& of) {
-  constexpr double kDust = 1e-100;
-  return (of.array().abs() < kDust * of.cwiseAbs().maxCoeff()).select(0, of);
-}
-
 CoreContact contact_of(const CoreView& a, const Matrix3d& R_WA, const CoreView& b, const Matrix3d& R_WB,
                        const Vector3d& r, const Vector3d& start) {
   if (is_line(a) && is_line(b)) {

@@ -1,3 +1,4 @@
+#include "cores/contact.h"
 #include "cores/polytope_smooth.h"
 
 #include <geom/distance.h>
@@ -13,7 +14,8 @@ DistanceResult to_smooth(const CoreBody& a, const Pose& X_WA, const Smooth& b, c
     const DistanceResult r = polytope_to_smooth(core, X_WA, b, X_WB, options);
     if (r.status != DistanceStatus::not_converged) return with_skins(r, a.core().radius, 0);
   }
-  return core_to_body(a, X_WA, b, X_WB, options);
+  const auto turned = [](const Pose& X) { return unchecked_pose(without_dust(X.rotation()), X.position()); };
+  return core_to_body(a, turned(X_WA), b, turned(X_WB), options);
 }
 
 }  // namespace

@@ -199,7 +199,8 @@ RivalTrial rival_trial(const ContactBody& a, const ContactBody& b, const Distanc
   RivalTrial trial;
   const bool deep = at.distance <= -(a.curvature_radius + b.curvature_radius) + kLeastStiffness * size;
   if (!answered(at) || !deep || !std::isfinite(at.error_bound)) return trial;
-  constexpr double kLeastTrial = 1e-6;  // of the size
+  // Of the size: both depths of a search, each certain to 1e-9 of it, have to be small beside the trial (confirms).
+  constexpr double kLeastTrial = 5e-6;
   constexpr double kTrialErrors = 1e4;
   trial.needed = true;
   trial.length = std::max(kLeastTrial * size, kTrialErrors * at.error_bound);

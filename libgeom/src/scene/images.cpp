@@ -1,12 +1,14 @@
 #include "scene/images.h"
 
 #include <geom/kernel/refuse.h>
+#include <geom/tolerances.h>
 
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <sstream>
 #include <string>
 
 namespace geom::scene {
@@ -15,6 +17,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 namespace {
+
+constexpr double kLeastLength = 1 / kMaxCoordinate;  ///< of a lattice vector: its square does not underflow
 
 /// Returns a unit vector across all columns but those that are 0, of which there is at least one.
 Vector3d across(const Matrix3d& columns) {
@@ -35,6 +39,13 @@ Images::Images(const Lattice& lattice) {
     if (!v.allFinite()) kernel::refuse("Lattice: vector " + std::to_string(k) + " is not finite");
     vectors_.col(k) = v;
     if (v.isZero(0)) continue;
+    const double length = v.stableNorm();
+    if (!(length >= kLeastLength && length <= kMaxCoordinate)) {
+      std::ostringstream message;
+      message << "Lattice: vector " << k << " has length " << length << "; accepted: 0, or " << kLeastLength << " to "
+              << kMaxCoordinate;
+      kernel::refuse(message.str());
+    }
     ++directions_;
     shortest_ = std::min(shortest_, v.norm());
     longest_ = std::max(longest_, v.norm());
@@ -87,7 +98,8 @@ Vector3d Images::cell(const Vector3d& point, const char* what) const {
   const Vector3d coordinates = inverse_ * point;
   for (int k = 0; k < 3; ++k) cell[k] = std::floor(coordinates[k] + 0.5);
   if (!(cell.cwiseAbs().maxCoeff() <= kFurthest)) {
-    kernel::refuse(std::string(what) + ": the position is more than 1e9 lattice vectors away from the origin");
+    kernel::refuse(std::string(what) +
+                   ": the position is more than 1e9 lattice vectors away from the origin; accepted: nearer ones");
   }
   return cell;
 }

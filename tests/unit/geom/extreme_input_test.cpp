@@ -17,6 +17,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace geom {
 namespace {
@@ -330,6 +331,43 @@ TEST(ExtremeInput, BatchesAnswerBodiesAtTheLimits) {
         ASSERT_EQ(r.status, DistanceStatus::separated) << far << ' ' << k;
         ASSERT_EQ(results[k].status, r.status) << far << ' ' << k;
         ASSERT_NEAR(results[k].distance, r.distance, 1e-13 * far) << far << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(ExtremeInput, ComponentsThatUnderflowChangeNothing) {
+  // Squares and products of the smallest components of poses vanish, but not always the components.
+  const std::vector<Vector3d> corners = {{1, 0, 0}, {-1, 0, 0}, {0, 2, 0}, {0, -2, 0}, {0, 0, 3}, {0, 0, -3}};
+  const std::vector<Shape> shapes = {Ellipsoid({1, 2, 3}),
+                                     Ellipsoid({1, 1, 3}),
+                                     Superellipsoid({1, 2, 3}, 0.4, 0.5),
+                                     Sphere(1),
+                                     Capsule(1, 0.5),
+                                     Box({1, 2, 3}),
+                                     ConvexPolyhedron(corners),
+                                     Cylinder(1, 3),
+                                     Cone(2, 1)};
+  Matrix3d R_WB;
+  R_WB << 0, -1, 0, 0, 0, 1, -1, 0, 0;
+  const auto at = [](double dust) {
+    Matrix3d R_WA;
+    R_WA << dust, -dust, -1, -1, 0, -dust, -0.0, 1, -dust;
+    return Pose(R_WA, {0, -dust, dust});
+  };
+  for (const Shape& a : shapes) {
+    for (const Shape& b : shapes) {
+      for (const double way : {2.875, 9.0}) {
+        const Pose X_WB(R_WB, {0, -way, 0});
+        const DistanceResult wanted = distance(a, at(0), b, X_WB);
+        ASSERT_TRUE(wanted.status == DistanceStatus::separated || wanted.status == DistanceStatus::overlapping);
+        for (const double dust : {3e-309, 1e-300, 1e-200, 1e-160}) {
+          const DistanceResult found = distance(a, at(dust), b, X_WB);
+          EXPECT_EQ(found.status, wanted.status) << dust << ' ' << a.index() << ' ' << b.index();
+          const double error = found.error_bound + wanted.error_bound + 1e-12;
+          EXPECT_NEAR(found.distance, wanted.distance, error) << dust << ' ' << a.index() << ' ' << b.index();
+          EXPECT_NEAR(found.normal.norm(), 1, 1e-12);
+        }
       }
     }
   }

@@ -14,6 +14,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <variant>
 #include <vector>
@@ -49,7 +50,9 @@ nb::tuple arrays_of_patches(std::span<const ContactPatch> patches) {
     const ContactPatch& patch = patches[row];
     kind.data[row] = static_cast<std::uint8_t>(patch.kind);
     Eigen::Vector3d::Map(normal.data + 3 * row) = patch.normal;
-    Eigen::Vector3d::Map(centre.data + 3 * row) = patch.centre;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const bool none = patch.kind == geom::PatchKind::empty;
+    Eigen::Vector3d::Map(centre.data + 3 * row) = none ? Eigen::Vector3d::Constant(kNone).eval() : patch.centre;
     area.data[row] = patch.area;
     error.data[row] = patch.error;
     for (const geom::PatchPoint& point : patch.points) {

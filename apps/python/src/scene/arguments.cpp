@@ -73,7 +73,7 @@ double margin_of(nb::handle value) {
 
 double reach(nb::handle value, const char* name) {
   const double length = number(value, name);
-  if (!(length >= 0)) refuse_value(name, shown(length), "a length of 0 or more, or inf");
+  if (!(length >= 0)) refuse_value(name, shown(length), "a number of 0 or more, or inf");
   return length;
 }
 

@@ -130,11 +130,11 @@ class SceneSearch {
       if (!(until > t)) until = std::min(t_max, std::nextafter(t, t_max));  // the clock is coarse
       search_pairs(pairs, t, until, first);
       if (first.contact.status != ContactStatus::separated || until == t_max) break;
+      move_on(t, until);
       t = until;
       duration *= 2;
-      move(t);
     }
-    move(first.contact.time);
+    move_on(t, first.contact.time);
     first.contact.evaluations = static_cast<int>(std::min<std::int64_t>(evaluations_, std::numeric_limits<int>::max()));
     return first;
   }
@@ -185,6 +185,19 @@ class SceneSearch {
   void move(double t) {
     for (std::size_t k = 0; k < moving_.size(); ++k) poses_[k] = moving_[k].motion.pose(t);
     scene_.move(bodies_, poses_);
+  }
+
+  /// Puts bodies where they are at a later time, and checks that they have got no further than their bounds allow:
+  /// pairs out of reach are not looked at.
+  void move_on(double from, double to) {
+    const std::vector<Pose> before = poses_;
+    move(to);
+    if (!(to > from)) return;
+    for (std::size_t k = 0; k < moving_.size(); ++k) {
+      const GivenMotion& motion = moving_[k].motion;
+      internal::check_way("first_contact", number_of(bodies_[k]), "", motion.bounds(from, to), motion,
+                          {from, before[k]}, {to, poses_[k]}, shape_of(bodies_[k]).bounding_radius());
+    }
   }
 
   const AnyConvex& shape_of(BodyId body) {

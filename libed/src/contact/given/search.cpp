@@ -179,16 +179,7 @@ class GivenSearch {
   /// Throws std::invalid_argument if a body has moved more than its bounds allow. `body`: its number in a scene, or -1.
   void check_bounds(std::int64_t body, const char* letter, const MotionBounds& bounds, const GivenMotion& motion,
                     double from, const Pose& X, const Pose& Y) const {
-    MotionScales scales = motion.scales();
-    scales.length += size_;
-    std::string fault = broken_speed(bounds, from, X, time_, Y, scales);
-    if (kLooksBetween && fault.empty()) {
-      fault = broken_acceleration(bounds, from, X, motion.pose(0.5 * (from + time_)), time_, Y, scales);
-    }
-    if (fault.empty()) return;
-    const std::string name = body < 0 ? std::string(letter) : "body " + std::to_string(body);
-    throw std::invalid_argument(std::string(names_.function) + ": the motion of " + name +
-                                " breaks its bounds: " + fault);
+    check_way(names_.function, body, letter, bounds, motion, {from, X}, {time_, Y}, size_);
   }
 
   /// Advances to the first time at which the bodies may touch, as far as the bounds tell. Returns how the search ends,
@@ -203,6 +194,8 @@ class GivenSearch {
     }
     window_ = 4 * kWindow * duration;
     if (bounds_.first * asked_ < gap - touching && asked_ >= left) {
+      // Bounds alone decide: whether the motions keep them is seen at the end.
+      if (evaluations_ < options_.max_evaluations) (void)advance(left);
       time_ = t_max_;
       return ContactStatus::separated;
     }
@@ -314,6 +307,20 @@ void check_given(const char* function, const GivenContactOptions& options, doubl
     return;
   }
   throw std::invalid_argument(std::string(function) + ": " + message.str());
+}
+
+void check_way(const char* function, std::int64_t body, const char* letter, const MotionBounds& bounds,
+               const GivenMotion& motion, const PoseAt& from, const PoseAt& to, double size) {
+  MotionScales scales = motion.scales();
+  scales.length += size;
+  std::string fault = broken_speed(bounds, from.time, from.X, to.time, to.X, scales);
+  if (kLooksBetween && fault.empty()) {
+    const Pose middle = motion.pose(0.5 * (from.time + to.time));
+    fault = broken_acceleration(bounds, from.time, from.X, middle, to.time, to.X, scales);
+  }
+  if (fault.empty()) return;
+  const std::string name = body < 0 ? std::string(letter) : "body " + std::to_string(body);
+  throw std::invalid_argument(std::string(function) + ": the motion of " + name + " breaks its bounds: " + fault);
 }
 
 void refuse_infinite_speeds(const GivenNames& names, double from, double to) {

@@ -59,6 +59,17 @@ void check_given(const char* function, const GivenContactOptions& options, doubl
 /// Throws std::invalid_argument: speeds have no bound between these times.
 [[noreturn]] void refuse_infinite_speeds(const GivenNames& names, double from, double to);
 
+/// Pose of a body at a time.
+struct PoseAt {
+  double time;
+  const geom::Pose& X;
+};
+
+/// Throws std::invalid_argument if a body has moved further between two times than its bounds over the interval allow.
+/// `body`: its number in a scene, or -1 for the one called `letter`; `size`: length whose rounding counts.
+void check_way(const char* function, std::int64_t body, const char* letter, const MotionBounds& bounds,
+               const GivenMotion& motion, const PoseAt& from, const PoseAt& to, double size);
+
 /// Searches the first contact; arguments are checked.
 ContactResult given_contact(const GivenPair& pair, const GivenMotion& motion_a, const GivenMotion& motion_b,
                             const GivenNames& names, double t_min, double t_max, const GivenContactOptions& options);

@@ -163,6 +163,10 @@ TEST(GivenContact, RefusesBrokenBoundsAndBadOptions) {
   const std::string broken =
       message_of([&] { return time_of_contact(kBall, at(0), kBall, along_x(x, 0.1, 0), 0, 50); });
   EXPECT_NE(broken.find("the motion of B breaks its bounds: it moves by"), std::string::npos) << broken;
+  // Bounds that leave nothing to search are compared with the end.
+  const std::string slow = message_of([&] { return time_of_contact(kBall, at(0), kBall, along_x(x, 0.1, 0), 0, 10); });
+  EXPECT_NE(slow.find("the motion of B breaks its bounds: it moves by"), std::string::npos) << slow;
+  EXPECT_EQ(time_of_contact(kBall, at(0), kBall, along_x(x, 1, 0), 0, 2).status, ContactStatus::separated);
   // Too fast only where the search does not look.
   const auto jumps = [](double t) { return t > 0.5 && t < 0.6 ? 0.0 : 5.0; };
   EXPECT_EQ(time_of_contact(kBall, at(0), kBall, along_x(jumps, 1, 0), 0, 3).status, ContactStatus::separated);

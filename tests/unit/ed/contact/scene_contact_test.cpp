@@ -276,6 +276,25 @@ struct MoodyBall {
 };
 
 // Bodies are put back even if their shapes still throw.
+TEST(SceneContact, RefusesMotionsThatGetOutOfReachOfTheirBounds) {
+  // By its bounds, the body gets nowhere near the other one.
+  geom::Scene scene;
+  const BodyId a = scene.add(geom::Sphere(1), Pose());
+  scene.add(geom::Sphere(1), Pose::translation({40, 0, 0}));
+  const GivenMotion motion(
+      [](double t) {
+        return Pose::translation({t, 0, 0});
+      },
+      [](double, double) {
+        return ed::MotionBounds{0.1, 0, 0, 0};
+      });
+  const std::vector<MovingBody> moving{{a, motion}};
+  const std::string message = message_of([&] { return ed::first_contact(scene, moving, 0, 100); });
+  EXPECT_NE(message.find("first_contact: the motion of body 0 breaks its bounds: it moves by"), std::string::npos)
+      << message;
+  EXPECT_EQ(scene.pose(a).position(), Vector3d::Zero().eval());
+}
+
 TEST(SceneContact, ThatAShapeThrowsOutOfLeavesTheScene) {
   geom::Scene scene;
   const MoodyBall ball;

@@ -294,6 +294,14 @@ TEST(Derivatives, AreDeclinedUnderARidge) {
   }
 }
 
+TEST(Derivatives, OfDeepOverlapsExistWhereTheSearchIsCoarse) {
+  // The depth of the bodies moved apart by the trial is certain to 2e-9 only.
+  const Pose X_WB =
+      Pose::normalized_quaternion(0.7576046316842783, 0.12153757954718945, -0.5370199336365591, -0.35053306503855697,
+                                  {-0.05455689324963755, -0.8924080623426848, 0.1730753138034499});
+  EXPECT_EQ(distance_derivatives(Cylinder(0.7, 0.5), Pose(), Box({0.6, 0.8, 1}), X_WB).status, DerivativeStatus::twice);
+}
+
 TEST(Derivatives, OfManyPairsAreThoseOfEach) {
   Random random(5);
   std::vector<Shape> shapes;

@@ -13,9 +13,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -71,6 +73,9 @@ GivenMotion::PoseFunction pose_function(nb::handle pose) {
 GivenMotion::BoundsFunction bounds_function(nb::handle bounds) {
   if (PyCallable_Check(bounds.ptr()) == 0) {
     const MotionBounds always = bounds_of(bounds);
+    if (!std::isfinite(always.speed) || !std::isfinite(always.angular_speed)) {
+      refuse_value("bounds", nb::cast<std::string>(nb::repr(bounds)), "finite speeds; accelerations may be inf");
+    }
     return [always](double, double) { return always; };
   }
   const auto held = std::make_shared<const HeldFunction>(bounds);
@@ -97,7 +102,9 @@ GivenMotion spline_of(nb::handle times, nb::handle poses) {
   for (std::size_t k = 0; k < rows.size(); ++k) at.push_back(*rows[k]);
   if (!nb::isinstance<nb::sequence>(poses)) refuse_type("poses", poses, "a list of Pose");
   std::vector<Pose> through;
-  for (const nb::handle pose : poses) through.push_back(instance<Pose>(pose, "poses"));
+  for (const nb::handle pose : poses) {
+    through.push_back(instance<Pose>(pose, ("poses[" + std::to_string(through.size()) + "]").c_str()));
+  }
   return GivenMotion::spline(std::move(at), through);
 }
 
