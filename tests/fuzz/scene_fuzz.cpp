@@ -220,6 +220,7 @@ void ask_scene(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
   }
   switch (input.byte() % 6) {
     case 0: {
+      if (is_periodic(scene) && !input.is_one_in(16)) break;  // thousands of pairs
       std::vector<geom::ScenePair> pairs;
       double cutoff = input.byte() % 4 == 0 ? input.coordinate() : reach * input.fraction();
       // Larger ones have millions of images within reach.
