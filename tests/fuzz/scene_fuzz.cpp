@@ -129,19 +129,22 @@ void ask_patch(const Shape& a, const Pose& X_WA, const Shape& b, const Pose& X_W
   }
 }
 
-/// Returns whether a body has thousands of images within a few times `reach`, and up to 1e8.
+/// Returns whether a body may have thousands of images within a few times `reach` or, where vectors differ much in
+/// length, between two bodies that are far from each other along a long one; up to 1e8.
 bool has_many_images(const geom::Lattice& lattice, double reach) {
-  double volume = 1;
+  double volume = 1, least = reach, largest = reach;
   for (std::size_t k = 0; k < 3; ++k) {
     Vector3d v = lattice.vectors[k];
     if (!v.any()) continue;
+    least = std::min(least, v.norm());
+    largest = std::max(largest, v.norm());
     for (std::size_t m = 0; m < k; ++m) {  // the part across the ones before
       const Vector3d& w = lattice.vectors[m];
       if (w.any()) v -= v.dot(w) / w.squaredNorm() * w;
     }
     volume *= std::min(1.0, v.norm() / reach);  // vectors that are long leave the images along the others
   }
-  return !(volume > 0.1);
+  return !(volume > 0.1) || !(largest < 1e3 * least);
 }
 
 bool is_periodic(const geom::Scene& scene) {
