@@ -28,8 +28,10 @@ constexpr double kPlaceRounding = 1e-14;
 /// Widths and lengths, of the extent of the shadows' common part, below which polygons are segments and segments
 /// points.
 constexpr double kNarrowExact = 1e-9, kShortSmooth = 1e-6;
-/// Distance, of that extent, up to which corners count as one.
+/// Distance, of that extent, up to which corners count as one, and are moved off the walls of polytopes.
 constexpr double kSameCorner = 1e-6;
+/// Share of the patch's width up to which they are moved.
+constexpr double kShareMoved = 0.1;
 /// Distance, of the size, of witness points from a line along the normal up to which the answer's points are used.
 constexpr double kOnNormal = 1e-9;
 constexpr int kSectors = 32;
@@ -78,16 +80,18 @@ class Maker {
     const double length = way.norm();
     middle_ = centroid(polygon);
     patch_.error = outline_.error();
+    const double across = length > 0 ? width_across(polygon, way / length) : 0;
     const double narrow = std::max(kNarrowExact * outline_.extent(), 10 * rounding_);
     if (length <= (outline_.is_exact() ? narrow : std::max(kShortSmooth * outline_.extent(), narrow))) {
       patch_.kind = PatchKind::point;
       add(middle_, 0);
-    } else if (width_across(polygon, way / length) <=
-               (outline_.is_exact() ? narrow : std::max(3 * options_.tolerance * length, narrow))) {
+    } else if (across <= (outline_.is_exact() ? narrow : std::max(3 * options_.tolerance * length, narrow))) {
       patch_.kind = PatchKind::segment;
+      reach_ = std::min(kSameCorner * outline_.extent(), kShareMoved * length);
       add_ends(polygon, i, j, way / length);
     } else {
       patch_.kind = PatchKind::polygon;
+      reach_ = std::min(kSameCorner * outline_.extent(), kShareMoved * across);
       patch_.area = area(polygon);
       // A tilted side of a body leaves sides as short as the tilt beside its edges, which come and go.
       Polygon merged = polygon;
@@ -135,7 +139,8 @@ class Maker {
   }
 
   void add(const Vector2d& place, std::uint64_t id) {
-    const auto heights = outline_.heights(place, middle_);
+    const auto heights =
+        outline_.is_exact() ? outline_.heights_off_walls(place, reach_) : outline_.heights(place, middle_);
     if (!heights) return;
     // Corners in one sector: multiples of an odd number are different up to 2^64 of them.
     while (!known_.insert(id).second) id += 0x9e3779b97f4a7c15;
@@ -150,6 +155,7 @@ class Maker {
   double rounding_;
   ContactPatch& patch_;
   Vector2d start_, middle_ = Vector2d::Zero();
+  double reach_ = 0;  ///< distance up to which corners are moved off walls
   std::set<std::uint64_t> known_;
 };
 

@@ -39,6 +39,13 @@ class Outline {
   /// at the place of the patch that the search has found; nullopt where a ray found no surface.
   std::optional<Heights> heights(const Vector2d& x, const Vector2d& inner) const;
 
+  /// Returns the heights of polytopes at the place nearest to x that is on no wall, a steep face that bounds the
+  /// others; where that is further away than `most`, on the way to it.
+  ///
+  /// Walls of bodies that are tilted a little bound the patch beyond the faces that touch, where the gap is as large as
+  /// it may be. This is the depth of the faces.
+  std::optional<Heights> heights_off_walls(const Vector2d& x, double most) const;
+
  private:
   /// Returns a rectangle around both shadows' common part.
   Polygon box() const;
