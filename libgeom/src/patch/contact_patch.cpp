@@ -36,11 +36,14 @@ constexpr double kShareMoved = 0.1;
 constexpr double kOnNormal = 1e-9;
 constexpr int kSectors = 32;
 
-/// Returns the place on the line from x along a unit vector, up to `reach` to both sides, where the gap is least.
-Vector2d least_gap(const Outline& outline, const Vector2d& x, const Vector2d& along, double reach) {
+/// Returns the place on the line from x along a unit vector, up to `reach` to both sides, where the gap is least; x if
+/// rays find no surface. Parts of the line may be beyond the end of a shadow: gaps are those on the way to `inner`.
+Vector2d least_gap(const Outline& outline, const Vector2d& x, const Vector2d& inner, const Vector2d& along,
+                   double reach) {
   constexpr double kGolden = 0.6180339887498949;
+  if (!outline.heights(x, inner)) return x;
   const auto gap = [&](double t) {
-    const auto heights = outline.heights(x + t * along, x);
+    const auto heights = outline.heights(x + t * along, inner);
     return heights ? heights->gap() : std::numeric_limits<double>::infinity();
   };
   double low = -reach, high = reach;
@@ -118,10 +121,10 @@ class Maker {
     const double reach = outline_.is_exact() ? 0 : width_across(polygon, along);
     for (const std::size_t k : {i, j}) {
       const Vector2d place = polygon[k].place;
-      add(reach == 0 ? place : least_gap(outline_, place, across, reach), identity(polygon, k));
+      add(reach == 0 ? place : least_gap(outline_, place, middle_, across, reach), identity(polygon, k));
     }
     middle_ = 0.5 * (polygon[i].place + polygon[j].place);
-    if (reach != 0) middle_ = least_gap(outline_, middle_, across, reach);
+    if (reach != 0) middle_ = least_gap(outline_, middle_, middle_, across, reach);
   }
 
   std::uint64_t identity(const Polygon& polygon, std::size_t k) const {
