@@ -173,6 +173,13 @@ void take_witness_points(const DistanceResult& at, double within, double size, C
   patch.error = kPlaceRounding * size;
 }
 
+/// Returns whether the surfaces are further apart than `within` everywhere, by the distance, a lower bound of the gap
+/// along its normal.
+bool are_apart(const DistanceResult& at, double within, double size) {
+  const Eigen::Vector3d way = at.point_b - at.point_a - at.distance * at.normal;
+  return at.distance > within && way.norm() <= kOnNormal * size;
+}
+
 void check(const DistanceResult& at, const PatchOptions& options) {
   if (!(options.within >= 0 && options.within <= kMaxCoordinate)) {
     kernel::refuse("contact_patch: within is " + kernel::shown(options.within) +
@@ -223,6 +230,7 @@ ContactPatch kernel::contact_patch(const PatchBody& a, const PatchBody& b, const
   };
   const double size = size_of(a) + size_of(b);
   const double rounding = patch::kPlaceRounding * size;
+  if (patch::are_apart(at, options.within + rounding, size)) return result;
   const patch::Surface upper(a, frame, 1, rounding), lower(b, frame, -1, rounding);
   patch::Outline outline(upper, lower, options, rounding);
   patch::Polygon polygon = outline.find();
