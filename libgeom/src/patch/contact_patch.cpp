@@ -182,8 +182,7 @@ bool are_apart(const DistanceResult& at, double within, double size) {
 
 void check(const DistanceResult& at, const PatchOptions& options) {
   if (!(options.within >= 0 && options.within <= kMaxCoordinate)) {
-    kernel::refuse("contact_patch: within is " + kernel::shown(options.within) +
-                   "; accepted: a finite length, 0 or more");
+    kernel::refuse("contact_patch: within is " + kernel::shown(options.within) + "; accepted: a length, 0 to 1e100");
   }
   if (!(options.tolerance >= 1e-4 && options.tolerance <= 0.5)) {
     kernel::refuse("contact_patch: tolerance is " + kernel::shown(options.tolerance) + "; accepted: 1e-4 to 0.5");

@@ -331,7 +331,8 @@ TEST(ContactPatch, RefusesBadOptions) {
   const auto message = [&](const PatchOptions& options) {
     return message_of([&] { static_cast<void>(contact_patch(box, Pose(), box, X_WB, at, options)); });
   };
-  EXPECT_EQ(message({.within = -1}), "contact_patch: within is -1; accepted: a finite length, 0 or more");
+  EXPECT_EQ(message({.within = -1}), "contact_patch: within is -1; accepted: a length, 0 to 1e100");
+  EXPECT_EQ(message({.within = 1e200}), "contact_patch: within is 1e+200; accepted: a length, 0 to 1e100");
   EXPECT_NE(message({.within = std::nan("")}).find("within is nan"), std::string::npos);
   EXPECT_EQ(message({.tolerance = 0}), "contact_patch: tolerance is 0; accepted: 1e-4 to 0.5");
   EXPECT_EQ(message({.max_points = 2}), "contact_patch: max_points is 2; accepted: 3 or more");
