@@ -99,6 +99,7 @@ class Maker {
       // A tilted side of a body leaves sides as short as the tilt beside its edges, which come and go.
       Polygon merged = polygon;
       if (merge(merged, kSameCorner * outline_.extent()) >= 3) polygon = std::move(merged);
+      if (outline_.is_exact()) outline_.join_sides(polygon, reach_);
       reduce(polygon, static_cast<std::size_t>(options_.max_points));
       for (std::size_t k = 0; k < polygon.size(); ++k) add(polygon[k].place, identity(polygon, k));
     }

@@ -99,6 +99,20 @@ std::optional<Outline::Heights> Outline::heights_off_walls(const Vector2d& x, do
   return is_off && s && t ? Heights{place, s->height, t->height} : heights_at(place);
 }
 
+void Outline::join_sides(Polygon& polygon, double slack) const {
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vector2d& next = polygon[(k + 1) % polygon.size()].place;
+    const std::optional<std::uint32_t> side = a_.side_along(polygon[k].place, next, slack);
+    if (side) polygon[k].side = side_of(1, *side, 0);
+  }
+  for (std::size_t k = polygon.size(); k-- > 0 && polygon.size() > 3;) {
+    const Corner& before = polygon[(k + polygon.size() - 1) % polygon.size()];
+    const Corner& after = polygon[(k + 1) % polygon.size()];
+    const double off = (closest_on(before.place, after.place, polygon[k].place) - polygon[k].place).norm();
+    if (before.side == polygon[k].side && off <= slack) polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+}
+
 Polygon Outline::box() const {
   std::array<double, 4> reach{};  // along x, y, -x, -y
   const std::array<Vector2d, 4> along{Vector2d{1, 0}, Vector2d{0, 1}, Vector2d{-1, 0}, Vector2d{0, -1}};

@@ -21,6 +21,10 @@ class Outline {
   /// Finds the polygon; empty if there is none.
   Polygon find();
 
+  /// Names sides that are within `slack` of one of polytope A's after that one, where tilts decide which of two bodies
+  /// bounds the patch, and leaves out corners between two sides of one name.
+  void join_sides(Polygon& polygon, double slack) const;
+
   /// Returns whether both surfaces are polytopes or planes, so that the corners are those of the patch.
   bool is_exact() const { return is_exact_; }
   /// Returns the diameter of the part of the plane that both shadows can have in common, after find().

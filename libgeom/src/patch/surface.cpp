@@ -274,6 +274,16 @@ std::optional<Line> Surface::past_rim(const Vector2d& x) const {
   return worst;
 }
 
+std::optional<std::uint32_t> Surface::side_along(const Vector2d& from, const Vector2d& to, double slack) const {
+  const auto near = [&](const Line& line, const Vector2d& x) {
+    return std::abs(line.normal.dot(x) - line.reach) <= slack;
+  };
+  for (const Line& line : outline_) {
+    if (near(line, from) && near(line, to)) return line.feature;
+  }
+  return std::nullopt;
+}
+
 std::optional<Tangent> Surface::at(const Vector2d& x) const {
   if (plane_) return Tangent{plane_->height + plane_->slope.dot(x), plane_->slope, 0};
   if (!facets_.empty()) return lowest(x, true, true);

@@ -87,6 +87,9 @@ class Surface {
   /// walls bound the other faces; nullopt: x is beyond none by more than the tolerance.
   std::optional<Line> past_rim(const Vector2d& x) const;
 
+  /// Returns the name of a polytope's side that is within `slack` of both ends of another side; nullopt: none.
+  std::optional<std::uint32_t> side_along(const Vector2d& from, const Vector2d& to, double slack) const;
+
   /// Returns the tangent plane over a place; nullopt outside of the shadow, too.
   std::optional<Tangent> over(const Vector2d& x) const { return exact() && beyond(x) ? std::nullopt : at(x); }
 
