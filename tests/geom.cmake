@@ -36,8 +36,10 @@ hardbody_test(geom_unit_test unit
   unit/geom/queries_test.cpp
   unit/geom/ray_cast_test.cpp
   unit/geom/ray_from_afar_test.cpp
+  unit/geom/patch/contact_patch_depth_test.cpp
   unit/geom/patch/contact_patch_limits_test.cpp
   unit/geom/patch/contact_patch_test.cpp
+  unit/geom/patch/contact_patch_thin_test.cpp
   unit/geom/scene/scene_queries_test.cpp
   unit/geom/scene/scene_pairs_test.cpp
   unit/geom/solids_test.cpp

@@ -91,7 +91,7 @@ def contact_patch(
 ) -> ContactPatch:
     """Returns the contact patch of two bodies along the normal of their distance.
 
-    within: greatest gap (length) along the normal at which surfaces count as touching, 0 or more. tolerance: accuracy
+    within: greatest gap (length) along the normal at which surfaces count as touching, 0 to 1e100. tolerance: accuracy
     of the outlines of curved surfaces, of the patch's diameter, 1e-4 to 0.5. max_points: largest number of corners, at
     least 3; those whose triangles are smallest are left out, the area is that of all.
 

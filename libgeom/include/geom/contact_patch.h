@@ -25,7 +25,7 @@ namespace geom {
 
 /// Options of contact_patch.
 struct PatchOptions {
-  /// Greatest gap (length) of the surfaces along the normal at which they count as touching, >= 0.
+  /// Greatest gap (length) of the surfaces along the normal at which they count as touching, 0 to 1e100.
   double within = 0;
   /// Accuracy of the outlines of curved surfaces, of the patch's diameter, within [1e-4, 0.5].
   double tolerance = 0.01;
@@ -49,12 +49,17 @@ enum class PatchKind {
 GEOM_EXPORT const char* to_string(PatchKind kind);
 
 /// Corner of a contact patch: the two points of the surfaces that are on one line along the normal, world frame.
+///
+/// Faces of polytopes steeper than 10, the walls of bodies that are tilted a little, bound the patch where the gap is
+/// `within`. Corners are moved off them, by at most 1e-6 of the extent of both shadows' common part, a tenth of the
+/// patch's width if that is less: their depth is that of the faces that touch.
 struct PatchPoint {
   Eigen::Vector3d point_a, point_b;
   double depth = 0;  ///< height of A's surface above that of B along the normal; negative where they are apart
   /// Identity of the corner: the two features of the bodies, faces mostly, that bound the patch there; of curved
   /// surfaces the corner's direction from the middle in A's frame, in 32 sectors. The same from call to call while
-  /// bodies move a little, unless a corner enters another sector or another face of a body becomes the flattest one.
+  /// bodies move a little, unless another face of a body becomes the flattest one; sides of B within 1e-6 of the extent
+  /// from those of A count as A's. Corners of round outlines are found anew at each call, and mostly in other sectors.
   /// Different within a patch.
   std::uint64_t id = 0;
 };
@@ -154,8 +159,8 @@ GEOM_EXPORT ContactPatch contact_patch(const PatchBody& a, const PatchBody& b, c
 ///
 /// Polygons narrower than 1e-9 of the extent of what both bodies' shadows have in common, for curved surfaces than
 /// three times the tolerance of their length, are segments; segments shorter than 1e-9 of it, 1e-6 for curved ones,
-/// points. Empty if `at` has no answer. Throws std::invalid_argument if `within` is negative or not finite, another
-/// option is out of range, the normal of an answer is not of length 1, or that of a half-space points along its plane.
+/// points. Empty if `at` has no answer. Throws std::invalid_argument if an option is out of range, the normal of an
+/// answer is not of length 1, or that of a half-space points along its plane.
 template <class A, class B>
 ContactPatch contact_patch(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const DistanceResult& at,
                            const PatchOptions& options) {

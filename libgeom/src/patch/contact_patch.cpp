@@ -28,17 +28,22 @@ constexpr double kPlaceRounding = 1e-14;
 /// Widths and lengths, of the extent of the shadows' common part, below which polygons are segments and segments
 /// points.
 constexpr double kNarrowExact = 1e-9, kShortSmooth = 1e-6;
-/// Distance, of that extent, up to which corners count as one.
+/// Distance, of that extent, up to which corners count as one, and are moved off the walls of polytopes.
 constexpr double kSameCorner = 1e-6;
+/// Share of the patch's width up to which they are moved.
+constexpr double kShareMoved = 0.1;
 /// Distance, of the size, of witness points from a line along the normal up to which the answer's points are used.
 constexpr double kOnNormal = 1e-9;
 constexpr int kSectors = 32;
 
-/// Returns the place on the line from x along a unit vector, up to `reach` to both sides, where the gap is least.
-Vector2d least_gap(const Outline& outline, const Vector2d& x, const Vector2d& along, double reach) {
+/// Returns the place on the line from x along a unit vector, up to `reach` to both sides, where the gap is least; x if
+/// rays find no surface. Parts of the line may be beyond the end of a shadow: gaps are those on the way to `inner`.
+Vector2d least_gap(const Outline& outline, const Vector2d& x, const Vector2d& inner, const Vector2d& along,
+                   double reach) {
   constexpr double kGolden = 0.6180339887498949;
+  if (!outline.heights(x, inner)) return x;
   const auto gap = [&](double t) {
-    const auto heights = outline.heights(x + t * along, x);
+    const auto heights = outline.heights(x + t * along, inner);
     return heights ? heights->gap() : std::numeric_limits<double>::infinity();
   };
   double low = -reach, high = reach;
@@ -78,20 +83,23 @@ class Maker {
     const double length = way.norm();
     middle_ = centroid(polygon);
     patch_.error = outline_.error();
+    const double across = length > 0 ? width_across(polygon, way / length) : 0;
     const double narrow = std::max(kNarrowExact * outline_.extent(), 10 * rounding_);
     if (length <= (outline_.is_exact() ? narrow : std::max(kShortSmooth * outline_.extent(), narrow))) {
       patch_.kind = PatchKind::point;
       add(middle_, 0);
-    } else if (width_across(polygon, way / length) <=
-               (outline_.is_exact() ? narrow : std::max(3 * options_.tolerance * length, narrow))) {
+    } else if (across <= (outline_.is_exact() ? narrow : std::max(3 * options_.tolerance * length, narrow))) {
       patch_.kind = PatchKind::segment;
+      reach_ = std::min(kSameCorner * outline_.extent(), kShareMoved * length);
       add_ends(polygon, i, j, way / length);
     } else {
       patch_.kind = PatchKind::polygon;
+      reach_ = std::min(kSameCorner * outline_.extent(), kShareMoved * across);
       patch_.area = area(polygon);
       // A tilted side of a body leaves sides as short as the tilt beside its edges, which come and go.
       Polygon merged = polygon;
       if (merge(merged, kSameCorner * outline_.extent()) >= 3) polygon = std::move(merged);
+      if (outline_.is_exact()) outline_.join_sides(polygon, reach_);
       reduce(polygon, static_cast<std::size_t>(options_.max_points));
       for (std::size_t k = 0; k < polygon.size(); ++k) add(polygon[k].place, identity(polygon, k));
     }
@@ -114,10 +122,10 @@ class Maker {
     const double reach = outline_.is_exact() ? 0 : width_across(polygon, along);
     for (const std::size_t k : {i, j}) {
       const Vector2d place = polygon[k].place;
-      add(reach == 0 ? place : least_gap(outline_, place, across, reach), identity(polygon, k));
+      add(reach == 0 ? place : least_gap(outline_, place, middle_, across, reach), identity(polygon, k));
     }
     middle_ = 0.5 * (polygon[i].place + polygon[j].place);
-    if (reach != 0) middle_ = least_gap(outline_, middle_, across, reach);
+    if (reach != 0) middle_ = least_gap(outline_, middle_, middle_, across, reach);
   }
 
   std::uint64_t identity(const Polygon& polygon, std::size_t k) const {
@@ -135,7 +143,8 @@ class Maker {
   }
 
   void add(const Vector2d& place, std::uint64_t id) {
-    const auto heights = outline_.heights(place, middle_);
+    const auto heights =
+        outline_.is_exact() ? outline_.heights_off_walls(place, reach_) : outline_.heights(place, middle_);
     if (!heights) return;
     // Corners in one sector: multiples of an odd number are different up to 2^64 of them.
     while (!known_.insert(id).second) id += 0x9e3779b97f4a7c15;
@@ -150,6 +159,7 @@ class Maker {
   double rounding_;
   ContactPatch& patch_;
   Vector2d start_, middle_ = Vector2d::Zero();
+  double reach_ = 0;  ///< distance up to which corners are moved off walls
   std::set<std::uint64_t> known_;
 };
 
@@ -164,10 +174,16 @@ void take_witness_points(const DistanceResult& at, double within, double size, C
   patch.error = kPlaceRounding * size;
 }
 
+/// Returns whether the surfaces are further apart than `within` everywhere, by the distance, a lower bound of the gap
+/// along its normal.
+bool are_apart(const DistanceResult& at, double within, double size) {
+  const Eigen::Vector3d way = at.point_b - at.point_a - at.distance * at.normal;
+  return at.distance > within && way.norm() <= kOnNormal * size;
+}
+
 void check(const DistanceResult& at, const PatchOptions& options) {
   if (!(options.within >= 0 && options.within <= kMaxCoordinate)) {
-    kernel::refuse("contact_patch: within is " + kernel::shown(options.within) +
-                   "; accepted: a finite length, 0 or more");
+    kernel::refuse("contact_patch: within is " + kernel::shown(options.within) + "; accepted: a length, 0 to 1e100");
   }
   if (!(options.tolerance >= 1e-4 && options.tolerance <= 0.5)) {
     kernel::refuse("contact_patch: tolerance is " + kernel::shown(options.tolerance) + "; accepted: 1e-4 to 0.5");
@@ -214,6 +230,7 @@ ContactPatch kernel::contact_patch(const PatchBody& a, const PatchBody& b, const
   };
   const double size = size_of(a) + size_of(b);
   const double rounding = patch::kPlaceRounding * size;
+  if (patch::are_apart(at, options.within + rounding, size)) return result;
   const patch::Surface upper(a, frame, 1, rounding), lower(b, frame, -1, rounding);
   patch::Outline outline(upper, lower, options, rounding);
   patch::Polygon polygon = outline.find();

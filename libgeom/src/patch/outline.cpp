@@ -20,6 +20,8 @@ constexpr double kGoodEnd = 0.2;
 constexpr int kMostJudgements = 20;
 /// Largest number of steps to the end of the patch on a way.
 constexpr int kMostSteps = 60;
+/// Largest number of lines that a place is moved to, one after the other.
+constexpr int kMostRims = 32;
 
 /// Returns the distance of the two corners that are furthest apart; 0 of an empty polygon.
 double diameter_of(const Polygon& polygon) {
@@ -76,6 +78,39 @@ std::optional<Outline::Heights> Outline::heights(const Vector2d& x, const Vector
     if (std::optional<Heights> found = heights_at(x + share * (inner - x))) return found;
   }
   return inner_ ? heights_at(*inner_) : std::nullopt;
+}
+
+std::optional<Outline::Heights> Outline::heights_off_walls(const Vector2d& x, double most) const {
+  Vector2d place = x;
+  bool is_off = false;
+  for (int step = 0; step < kMostRims && !is_off; ++step) {
+    is_off = true;
+    for (const Surface* surface : {&a_, &b_}) {
+      const std::optional<Line> line = surface->past_rim(place);
+      if (!line) continue;
+      place -= (line->normal.dot(place) - line->reach) * line->normal;
+      is_off = false;
+    }
+  }
+  const double length = (place - x).norm();
+  if (length > most) return heights_at(x + most / length * (place - x));
+  // The height of a wall over its rim is uncertain; the other faces have the same there.
+  const std::optional<Tangent> s = a_.top(place), t = b_.top(place);
+  return is_off && s && t ? Heights{place, s->height, t->height} : heights_at(place);
+}
+
+void Outline::join_sides(Polygon& polygon, double slack) const {
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    const Vector2d& next = polygon[(k + 1) % polygon.size()].place;
+    const std::optional<std::uint32_t> side = a_.side_along(polygon[k].place, next, slack);
+    if (side) polygon[k].side = side_of(1, *side, 0);
+  }
+  for (std::size_t k = polygon.size(); k-- > 0 && polygon.size() > 3;) {
+    const Corner& before = polygon[(k + polygon.size() - 1) % polygon.size()];
+    const Corner& after = polygon[(k + 1) % polygon.size()];
+    const double off = (closest_on(before.place, after.place, polygon[k].place) - polygon[k].place).norm();
+    if (before.side == polygon[k].side && off <= slack) polygon.erase(polygon.begin() + static_cast<std::ptrdiff_t>(k));
+  }
 }
 
 Polygon Outline::box() const {

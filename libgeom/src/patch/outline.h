@@ -21,6 +21,10 @@ class Outline {
   /// Finds the polygon; empty if there is none.
   Polygon find();
 
+  /// Names sides that are within `slack` of one of polytope A's after that one, where tilts decide which of two bodies
+  /// bounds the patch, and leaves out corners between two sides of one name.
+  void join_sides(Polygon& polygon, double slack) const;
+
   /// Returns whether both surfaces are polytopes or planes, so that the corners are those of the patch.
   bool is_exact() const { return is_exact_; }
   /// Returns the diameter of the part of the plane that both shadows can have in common, after find().
@@ -38,6 +42,13 @@ class Outline {
   /// Returns the heights at a place; where that is not in both shadows, at the first one that is on the way inwards, or
   /// at the place of the patch that the search has found; nullopt where a ray found no surface.
   std::optional<Heights> heights(const Vector2d& x, const Vector2d& inner) const;
+
+  /// Returns the heights of polytopes at the place nearest to x that is on no wall, a steep face that bounds the
+  /// others; where that is further away than `most`, on the way to it.
+  ///
+  /// Walls of bodies that are tilted a little bound the patch beyond the faces that touch, where the gap is as large as
+  /// it may be. This is the depth of the faces.
+  std::optional<Heights> heights_off_walls(const Vector2d& x, double most) const;
 
  private:
   /// Returns a rectangle around both shadows' common part.

@@ -20,6 +20,9 @@ constexpr int kShadowSteps = 60;
 /// Component of a half-space's normal along the direction that is too little.
 constexpr double kAlongPlane = 1e-6;
 
+/// Slope from which on a face is a wall.
+constexpr double kWall = 10;
+
 /// Returns the indices of the corners of the convex hull of points, anticlockwise. Points that are closer to each other
 /// than the tolerance count once, the highest of them; so do those that close to an edge.
 std::vector<std::size_t> plane_hull(const std::vector<Vector3d>& points, double tolerance) {
@@ -154,7 +157,8 @@ void Surface::read_polytope(std::vector<Vector3d> corners, std::vector<Vector3d>
     // Planes are moved outwards by the tolerance: a steep one, whose height is uncertain, does not count where a
     // flatter one is lower.
     const double height = offsets[f] / normals[f].z() + tolerance_ * slope.norm();
-    facets_.push_back({slope, height, f == flattest ? 0U : static_cast<std::uint32_t>(f) + 1});
+    const std::uint32_t feature = f == flattest ? 0U : static_cast<std::uint32_t>(f) + 1;
+    facets_.push_back({slope, height, feature, slope.norm() >= kWall});
   }
   read_outline(corners, normals, faces);
 }
@@ -234,19 +238,55 @@ std::optional<Line> Surface::beyond_smooth(const Vector2d& x) const {
   return line;
 }
 
+std::optional<Tangent> Surface::lowest(const Vector2d& x, bool with_tops, bool with_walls) const {
+  const Facet* lowest = nullptr;
+  double height = 0;
+  for (const Facet& facet : facets_) {
+    if (!(facet.is_wall ? with_walls : with_tops)) continue;
+    const double z = facet.height + facet.slope.dot(x);
+    if (lowest != nullptr && !(z < height)) continue;
+    lowest = &facet;
+    height = z;
+  }
+  if (lowest == nullptr) return std::nullopt;
+  return Tangent{std::clamp(height, bottom_, top_), lowest->slope, lowest->feature};
+}
+
+std::optional<Tangent> Surface::top(const Vector2d& x) const {
+  return plane_ ? at(x) : lowest(x, true, false);
+}
+
+std::optional<Line> Surface::past_rim(const Vector2d& x) const {
+  std::optional<Line> worst = beyond(x);
+  const std::optional<Tangent> flat = top(x);
+  if (!flat) return worst;
+  double most = worst ? worst->normal.dot(x) - worst->reach : tolerance_;
+  for (const Facet& facet : facets_) {
+    if (!facet.is_wall) continue;
+    const Vector2d gradient = flat->slope - facet.slope;
+    const double steepness = gradient.norm();
+    const double excess = (flat->height - facet.height - facet.slope.dot(x)) / steepness;
+    if (!(excess > most)) continue;
+    most = excess;
+    const Vector2d normal = gradient / steepness;
+    worst = Line{normal, normal.dot(x) - excess, facet.feature, true};
+  }
+  return worst;
+}
+
+std::optional<std::uint32_t> Surface::side_along(const Vector2d& from, const Vector2d& to, double slack) const {
+  const auto near = [&](const Line& line, const Vector2d& x) {
+    return std::abs(line.normal.dot(x) - line.reach) <= slack;
+  };
+  for (const Line& line : outline_) {
+    if (near(line, from) && near(line, to)) return line.feature;
+  }
+  return std::nullopt;
+}
+
 std::optional<Tangent> Surface::at(const Vector2d& x) const {
   if (plane_) return Tangent{plane_->height + plane_->slope.dot(x), plane_->slope, 0};
-  if (!facets_.empty()) {
-    const Facet* lowest = nullptr;
-    double height = 0;
-    for (const Facet& facet : facets_) {
-      const double z = facet.height + facet.slope.dot(x);
-      if (lowest != nullptr && !(z < height)) continue;
-      lowest = &facet;
-      height = z;
-    }
-    return Tangent{std::clamp(height, bottom_, top_), lowest->slope, lowest->feature};
-  }
+  if (!facets_.empty()) return lowest(x, true, true);
   const Vector3d above(x.x(), x.y(), sign_ * (top_ + 0.1 * (top_ - bottom_)));
   const Vector3d down = -sign_ * frame_.axes.col(2);
   const RayHit hit = body_.ray(body_.shape, body_.X_WS, frame_.to_world(above), down);

@@ -79,6 +79,17 @@ class Surface {
   /// of a curved surface. The feature is 0 for the face that lies most across the direction.
   std::optional<Tangent> at(const Vector2d& x) const;
 
+  /// Returns the tangent plane over a place of a polytope without its walls, steep faces that bound the others; nullopt
+  /// if all are walls.
+  std::optional<Tangent> top(const Vector2d& x) const;
+
+  /// Returns the line beyond which a place of a polytope is furthest, of the shadow's sides and of the rims along which
+  /// walls bound the other faces; nullopt: x is beyond none by more than the tolerance.
+  std::optional<Line> past_rim(const Vector2d& x) const;
+
+  /// Returns the name of a polytope's side that is within `slack` of both ends of another side; nullopt: none.
+  std::optional<std::uint32_t> side_along(const Vector2d& from, const Vector2d& to, double slack) const;
+
   /// Returns the tangent plane over a place; nullopt outside of the shadow, too.
   std::optional<Tangent> over(const Vector2d& x) const { return exact() && beyond(x) ? std::nullopt : at(x); }
 
@@ -88,6 +99,7 @@ class Surface {
     Vector2d slope;
     double height;  ///< height over the origin
     std::uint32_t feature;
+    bool is_wall;
   };
 
   void read_hull(const kernel::Hull& hull);
@@ -98,6 +110,8 @@ class Surface {
   /// Makes the outline; axes of the frame, z along the direction.
   void read_outline(const std::vector<Vector3d>& corners, const std::vector<Vector3d>& normals,
                     const std::vector<std::vector<int>>& faces);
+  /// Returns the lowest plane over a place among the walls, the other faces, or both, within the polytope's heights.
+  std::optional<Tangent> lowest(const Vector2d& x, bool with_tops, bool with_walls) const;
   Vector3d local(const Vector3d& world_vector) const;
   Vector2d support(const Vector2d& direction) const;
   std::optional<Line> beyond_smooth(const Vector2d& x) const;

@@ -103,5 +103,29 @@ TEST(ContactPatch, OfACubeOnItsEdgeKeepsItsIdentities) {
   EXPECT_EQ(ids(1e-9).size(), 4U);
 }
 
+/// Sides of both boxes are in the same place: which of them bounds the patch depends on the tilt.
+TEST(ContactPatch, OfEqualBoxesKeepsItsIdentities) {
+  const Box box({0.5, 0.5, 0.5});
+  const auto patch_at = [&](double tilt, const Vector3d& axis, const Vector3d& shift) {
+    return contact_patch(box, Pose(), box, turned(Vector3d(0, 0, 0.9995) + shift, tilt, axis), {.within = 1e-3});
+  };
+  const ContactPatch flat = patch_at(0, Vector3d::UnitX(), Vector3d::Zero());
+  ASSERT_EQ(flat.points.size(), 4U);
+  Random random(4);
+  for (int k = 0; k < repetitions(200); ++k) {
+    const Vector3d shift = 1e-7 * Vector3d(random.uniform(-1, 1), random.uniform(-1, 1), 0);
+    const double tilt = (k % 2 == 0 ? 1 : -1) * random.log_uniform(1e-16, 4e-7);
+    const ContactPatch patch = patch_at(tilt, k % 3 == 0 ? Vector3d(Vector3d::UnitZ()) : random.direction(), shift);
+    check_form(patch);
+    EXPECT_EQ(identities(patch), identities(flat)) << k;
+    EXPECT_NEAR(patch.area, 1, 3e-6);
+  }
+  for (const double tilt : {-1e-6, 1e-6}) {
+    for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(1, 0.3, 0), Vector3d(0, 0, 1)}) {
+      EXPECT_EQ(identities(patch_at(tilt, axis, Vector3d::Zero())), identities(flat)) << tilt << " " << axis;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace geom

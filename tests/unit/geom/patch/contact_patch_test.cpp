@@ -296,6 +296,34 @@ TEST(ContactPatch, SmallerThanTheDistanceOfCorners) {
   }
 }
 
+/// The answer for bodies further apart than `within` has a normal, and nothing else.
+TEST(ContactPatch, OfBodiesFarApartIsEmpty) {
+  const auto check = [](const ContactPatch& patch, const DistanceResult& at) {
+    EXPECT_EQ(patch.kind, PatchKind::empty);
+    EXPECT_LE((patch.normal - at.normal).norm(), 1e-15);
+    EXPECT_EQ(patch.area, 0);
+    EXPECT_EQ(patch.error, 0);
+    EXPECT_EQ(patch.centre, Vector3d(Vector3d::Zero()));
+    EXPECT_TRUE(patch.points.empty());
+  };
+  const Pose X = turned({1, 0.5, 3}, 0.3, {1, 2, 3});
+  for (const Shape& a : {Shape(Box({1, 1, 1})), Shape(Ellipsoid({1, 0.8, 0.5})), Shape(Cylinder(1, 1))}) {
+    for (const Shape& b : {Shape(Box({1, 1, 0.6})), Shape(Superellipsoid({1, 1, 0.6}, 0.3, 0.3))}) {
+      const DistanceResult at = distance(a, Pose(), b, X);
+      ASSERT_GT(at.distance, 0);
+      for (const double share : {0.0, 0.5, 0.999}) {
+        check(contact_patch(a, Pose(), b, X, at, {.within = share * at.distance}), at);
+      }
+      EXPECT_NE(contact_patch(a, Pose(), b, X, at, {.within = 1.001 * at.distance}).kind, PatchKind::empty);
+    }
+  }
+  // Along another normal, the one body may be on the wrong side of the other: the distance says nothing.
+  DistanceResult at = distance(Box({1, 1, 1}), Pose(), Box({1, 1, 1}), Pose::translation({0, 0.5, 3}));
+  at.normal = -at.normal;
+  EXPECT_EQ(contact_patch(Box({1, 1, 1}), Pose(), Box({1, 1, 1}), Pose::translation({0, 0.5, 3}), at, {}).kind,
+            PatchKind::polygon);
+}
+
 TEST(ContactPatch, RefusesBadOptions) {
   const Box box({1, 1, 1});
   const Pose X_WB = Pose::translation({0, 0, 2.5});
@@ -303,7 +331,8 @@ TEST(ContactPatch, RefusesBadOptions) {
   const auto message = [&](const PatchOptions& options) {
     return message_of([&] { static_cast<void>(contact_patch(box, Pose(), box, X_WB, at, options)); });
   };
-  EXPECT_EQ(message({.within = -1}), "contact_patch: within is -1; accepted: a finite length, 0 or more");
+  EXPECT_EQ(message({.within = -1}), "contact_patch: within is -1; accepted: a length, 0 to 1e100");
+  EXPECT_EQ(message({.within = 1e200}), "contact_patch: within is 1e+200; accepted: a length, 0 to 1e100");
   EXPECT_NE(message({.within = std::nan("")}).find("within is nan"), std::string::npos);
   EXPECT_EQ(message({.tolerance = 0}), "contact_patch: tolerance is 0; accepted: 1e-4 to 0.5");
   EXPECT_EQ(message({.max_points = 2}), "contact_patch: max_points is 2; accepted: 3 or more");
