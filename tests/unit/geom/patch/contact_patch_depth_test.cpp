@@ -53,7 +53,9 @@ void check_tilted(const A& ground, const Box& box, const Vector3d& position, dou
   check_form(patch);
   ASSERT_EQ(patch.kind, PatchKind::polygon);
   // Walls wider than the corners that count as one have corners of their own.
-  if (tilt <= 3e-4) EXPECT_EQ(patch.points.size(), 4U) << tilt << " about " << axis.transpose();
+  if (tilt <= 3e-4) {
+    EXPECT_EQ(patch.points.size(), 4U) << tilt << " about " << axis.transpose();
+  }
   EXPECT_GT(depth_range(patch).least, -at.distance - std::tan(tilt) * diameter - 1e-12)
       << tilt << " about " << axis.transpose();
   for (const PatchPoint& point : patch.points) {
