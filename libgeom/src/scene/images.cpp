@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr double kLeastLength = 1 / kMaxCoordinate;  ///< least length of a lattice vector: its square does not underflow
+constexpr double kLeastLength =
+    1 / kMaxCoordinate;  ///< least length of a lattice vector: its square does not underflow
 
 /// Returns a unit vector across all columns but those that are 0, of which there is at least one.
 Vector3d across(const Matrix3d& columns) {
