@@ -122,7 +122,7 @@ OTHER_WORDS = {
     "factor": r"semi-axis [xyz] is",
     "mass": r"^inertia is .* (all mass at the bounding radius|mass within the body)",
     # Radii and symmetries are the object's, which its name stands for.
-    "object": r"accepted: an object with a method support|^mine\.\w+ is missing"
+    "object": r"accepted: an object with a method support|^mine\.\w+ is missing|^a property of \(.*\) cannot be read"
     r"|^shape mine: (volume is .* bounding sphere$|symmetry_axis is .* changes the support height)",
     "components": r"number of bodies is|and body \d+ is ellipsoid of semi-axes|number is \d+|"
     r"bodies of its types, the config|accepted: .* components",

@@ -278,7 +278,7 @@ def test_bad_scenes(bodies):
         (lambda: scene.nearest(hb.Sphere(1), hb.Pose(), within=-1), "within"),
         (lambda: scene.ray_cast([0, 0, 0], [0, 0, 0]), "direction"),
         (lambda: scene.ray_cast_many([[0, 0, 0]], [[0, 0, 0]]), "directions"),
-        (lambda: scene.distance(2, 2), "j is 2; accepted: another body than i"),
+        (lambda: scene.distance(2, 2), "j is 2, as i; accepted: another body"),
         (lambda: scene.first_contact({10**30: hb.Motion()}, 1), "moving: a key is an integer outside"),
         (lambda: scene.first_contact({-1: hb.Motion()}, 1), "moving: a key is -1; accepted: an integer from 0"),
         (lambda: scene.first_contact({True: hb.Motion()}, 1), "moving: a key is"),

@@ -38,6 +38,13 @@ int kernel::support_vertex(const Hull& hull, const Vector3d& n) {
 
 namespace {
 
+/// Returns whether a direction is along z, as far as doubles tell: `across`, its part across z, is nothing beside it.
+/// The ratio of a length to it might overflow.
+bool is_along_z(const Vector3d& n, double across) {
+  constexpr double kNothing = 1e-100;
+  return !(across > kNothing * std::abs(n.z()));
+}
+
 /// Returns the disc of a frustum that reaches furthest along n, `across` the part of n across the axis.
 const kernel::CoreDisc& furthest_disc(const kernel::CoreView& core, const Vector3d& n, double across) {
   const auto& [low, high] = core.disc;
@@ -49,7 +56,7 @@ const kernel::CoreDisc& furthest_disc(const kernel::CoreView& core, const Vector
 
 Matrix3d kernel::rim_hessian(const CoreView& core, const Vector3d& n) {
   const double across = length_of(n.x(), n.y());
-  if (!(across > 0)) return Matrix3d::Zero();
+  if (is_along_z(n, across)) return Matrix3d::Zero();
   const Vector3d along(-n.y() / across, n.x() / across, 0);
   return furthest_disc(core, n, across).radius / across * along * along.transpose();
 }
@@ -72,7 +79,7 @@ Support kernel::core_support(const CoreView& core, const Vector3d& n) {
     case CoreKind::frustum: {
       const double across = length_of(n.x(), n.y());
       const CoreDisc& disc = furthest_disc(core, n, across);
-      const double share = across > 0 ? disc.radius / across : 0;  // along the axis: the middle of the face
+      const double share = is_along_z(n, across) ? 0 : disc.radius / across;  // along the axis: the middle of the face
       return {disc.z * n.z() + disc.radius * across, {share * n.x(), share * n.y(), disc.z}};
     }
   }

@@ -357,6 +357,13 @@ TEST(ExtremeInput, ComponentsThatUnderflowChangeNothing) {
   };
   for (const Shape& a : shapes) {
     for (const Shape& b : shapes) {
+      for (const double dust : {3e-318, 3e-309, 1e-300, 1e-160}) {
+        // Nearly on a common axis.
+        const DistanceResult found = distance(a, Pose(), b, Pose::translation({dust, -2 * dust, 9}));
+        ASSERT_EQ(found.status, DistanceStatus::separated);
+        EXPECT_NEAR(found.distance, distance(a, Pose(), b, Pose::translation({0, 0, 9})).distance, 1e-12);
+        EXPECT_NEAR((found.point_b - found.point_a - found.distance * found.normal).norm(), 0, 1e-12);
+      }
       for (const double way : {2.875, 9.0}) {
         const Pose X_WB(R_WB, {0, -way, 0});
         const DistanceResult wanted = distance(a, at(0), b, X_WB);

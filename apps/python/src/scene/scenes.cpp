@@ -136,7 +136,7 @@ class PythonScene {
     const geom::DistanceOptions options = distance_options(max_iterations, penetration);
     const BodyId first = handle_of(i, "i"), second = handle_of(j, "j");
     if (first == second) {
-      refuse_value("j", std::to_string(static_cast<std::uint32_t>(second)), "another body than i");
+      refuse_value("j", std::to_string(static_cast<std::uint32_t>(second)) + ", as i", "another body");
     }
     geom::ScenePair pair;
     read([&] { pair = scene_.distance(first, second, options); });
