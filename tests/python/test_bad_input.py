@@ -113,6 +113,7 @@ OTHER_WORDS = {
     "time": r"propagate: t is",
     "shapes": r"shape_of\[\d+\] is|^density has shape \(2,\); accepted: a number, or one a shape",
     "positions": r"body_of\[\d+\] is .*; accepted: none, there are no bodies",
+    "lattice": r"^Lattice: vector",
     "i": r"^Scene: body \d+ has (not been added|been removed)",
     "j": r"^Scene: body \d+ has (not been added|been removed)",
 }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iomanip>
 #include <sstream>
 #include <string>
 
@@ -43,8 +44,8 @@ Images::Images(const Lattice& lattice) {
     const double length = v.stableNorm();
     if (!(length >= kLeastLength && length <= kMaxCoordinate)) {
       std::ostringstream message;
-      message << "Lattice: vector " << k << " has length " << length << "; accepted: 0, or " << kLeastLength << " to "
-              << kMaxCoordinate;
+      message << "Lattice: vector " << k << " has length " << std::setprecision(17) << length << std::setprecision(6)
+              << "; accepted: 0, or " << kLeastLength << " to " << kMaxCoordinate;
       kernel::refuse(message.str());
     }
     ++directions_;
