@@ -147,6 +147,8 @@ TaskEnd Task::run(std::size_t k) {
     return work_on(k, lock);
   } catch (const TaskLock::Held& held) {
     return {kTryAgain, fmt::format("{} works on it", held.holder)};
+  } catch (const InputError&) {
+    throw;
   } catch (const std::runtime_error& error) {
     // The machine has failed, not the run: a full disk, say, or no room for another process.
     return {kTryAgain, error.what()};
@@ -178,17 +180,18 @@ TaskEnd Task::work_on(std::size_t k, const TaskLock& lock) {
 }
 
 TaskEnd Task::judged(std::size_t k, const WorkerEnd& end) {
-  const bool stopped = stopped_by_signal(end.status);
-  if (stopped || end.killed) {
+  // 128 + a signal also of a run that a process of its own has started for it.
+  if (end.status > 128) {
     state_.settle(k, PointStatus::stopped, "");
     state_.write_state(k);
     const std::string by_signal = fmt::format("ended by signal {}", end.status - 128);
     if (signal() == 0) return {kTryAgain, by_signal};
     // A start that has not ended has no state.
     const bool begun = fs::exists(directory_ / state_.records()[k].directory / kCheckpointFile);
-    return {exit_status_of(signal()), end.killed ? by_signal + ", its last checkpoint continues"
-                                      : begun    ? "stopped, its state is saved"
-                                                 : "stopped during its start"};
+    const bool stopped = stopped_by_signal(end.status) && !end.killed;
+    return {exit_status_of(signal()), !stopped ? by_signal + ", its last checkpoint continues"
+                                      : begun  ? "stopped, its state is saved"
+                                               : "stopped during its start"};
   }
   state_.end(k, end);
   const PointRecord& record = state_.records()[k];

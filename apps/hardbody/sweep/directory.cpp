@@ -31,10 +31,12 @@ std::string stored_text(const SweepFile& sweep, const fs::path& directory) {
   return "# The sweep in this directory.\n" + document_text(moved(sweep.whole, sweep.directory, directory));
 }
 
-/// Checks that a sweep is the one that the directory holds, or one with more points.
-void check_same_sweep(const fs::path& directory, const SweepFile& sweep) {
+/// Checks that a sweep is the one that the directory holds, or one with more points. Returns the one it holds.
+SweepFile checked_sweep(const fs::path& directory, const SweepFile& sweep) {
   const std::string name = (directory / kSweepFile).string();
-  check_continues(parse_sweep(read_file(name, kLongestStoredSweep), name, directory), sweep, directory);
+  SweepFile held = parse_sweep(read_file(name, kLongestStoredSweep), name, directory);
+  check_continues(held, sweep, directory);
+  return held;
 }
 
 void store(const fs::path& directory, const SweepFile& sweep) {
@@ -58,7 +60,7 @@ DirectoryLock take_directory(const fs::path& directory, const SweepFile& sweep) 
                       "sweep to continue",
                       directory.string()));
     }
-    if (fs::exists(directory / kSweepFile)) check_same_sweep(directory, sweep);
+    if (fs::exists(directory / kSweepFile)) (void)checked_sweep(directory, sweep);
     store(directory, sweep);
     return lock;
   } catch (const fs::filesystem_error& error) {
@@ -82,9 +84,7 @@ DirectoryLock share_directory(const fs::path& directory, const SweepFile& sweep)
   DirectoryLock lock(directory, Sharing::shared);
   const std::string stored = read_file(directory / kSweepFile, kLongestStoredSweep);
   if (stored == stored_text(sweep, directory)) return lock;
-  const std::string name = (directory / kSweepFile).string();
-  const SweepFile held = parse_sweep(stored, name, directory);
-  check_continues(held, sweep, directory);
+  const SweepFile held = checked_sweep(directory, sweep);
   try {
     check_continues(sweep, held, directory);
   } catch (const InputError&) {

@@ -95,7 +95,7 @@ void EventLoop<Bodies, Law, Added>::sample_translations(Snapshot& snapshot) cons
   snapshot.time = time();
   snapshot.position.resize(at(number()));
   snapshot.velocity.resize(at(number()));
-  // Zeros written anew into every frame would take a tenth of its time.
+  // Frames are many: zeros are written into the first one.
   for (auto* kept : {&snapshot.axis, &snapshot.phi_lab, &snapshot.phi_body, &snapshot.angular_velocity}) {
     if (kept->size() != at(number())) kept->assign(at(number()), Eigen::Vector3d::Zero());
   }

@@ -101,7 +101,7 @@ bool declined(const DistanceResult& result) {
 }
 
 /// Calls fill(first, found) for blocks of `number` candidates, which sets what it finds of candidates first, first + 1,
-/// .. Returns what is to be kept: memory grows with that, not with the candidates.
+/// .. Returns what is to be kept; the other answers take no memory.
 template <class Found, class Fill, class Keep>
 std::vector<Found> answers_of(std::size_t number, int threads, const Fill& fill, const Keep& keep) {
   constexpr std::size_t kRound = std::size_t{1} << 18;  // candidates at a time
