@@ -32,11 +32,17 @@ function(hardbody_target target)
     -ffp-contract=off
     # Nobody reads errno or the floating-point flags; without these sqrt is a call.
     -fno-math-errno -fno-trapping-math
-    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wdouble-promotion -Wnon-virtual-dtor
-    -Woverloaded-virtual -Wold-style-cast
     $<$<BOOL:${HARDBODY_WERROR}>:-Werror>
+    # GCC collects its garbage from 0.5 GB on instead of 0.13: a tenth of its time.
+    $<$<CXX_COMPILER_ID:GNU>:SHELL:--param ggc-min-heapsize=524288>
     # RelWithDebInfo is -O2 by default; the kernels want -O3 there too.
     $<$<CONFIG:Release,RelWithDebInfo>:$<IF:$<BOOL:${arg_COLD}>,-O1,-O3>>)
+  if(HARDBODY_WARNINGS)
+    target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+      -Wdouble-promotion -Wnon-virtual-dtor -Woverloaded-virtual -Wold-style-cast)
+  else()
+    target_compile_options(${target} PRIVATE -w)
+  endif()
   if(HARDBODY_ARCH AND NOT arg_BASELINE)
     target_compile_options(${target} PRIVATE -march=${HARDBODY_ARCH})
   endif()
