@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <cmath>
 #include <iterator>
 
@@ -11,7 +12,8 @@ void append_number(std::string& text, double value) {
   if (!std::isfinite(value)) {
     text += "null";
   } else {
-    fmt::format_to(std::back_inserter(text), "{:.17g}", value);
+    char digits[32];
+    text.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
   }
 }
 

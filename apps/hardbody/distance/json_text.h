@@ -11,7 +11,7 @@
 
 namespace hardbody {
 
-/// Appends a number with 17 significant digits, or `null` if it is not finite.
+/// Appends a number with the fewest digits that give it again, or `null` if it is not finite.
 void append_number(std::string& text, double value);
 
 /// Appends [x, y, z], its numbers null if they are not finite.

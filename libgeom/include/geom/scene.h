@@ -222,9 +222,9 @@ class GEOM_EXPORT Scene {
 
   /// Returns the first body that origin + t direction, 0 <= t <= t_max, meets, with `ray_cast`. If a body that may be
   /// the first declines, that body is returned, with that status. Throws std::invalid_argument if a number is not
-  /// finite, the direction is zero, t_max is negative, or a periodic ray is longer than 1e6 times the shortest lattice
-  /// vector or has more than 1e8 images on its way; what is beyond all bodies along directions in which the scene does
-  /// not repeat does not count.
+  /// finite, the direction is zero, t_max is negative, or a periodic ray begins further away than 1e9 times the
+  /// shortest lattice vector, is longer than 1e6 times that, or has more than 1e8 images on its way; of its length,
+  /// what is beyond all bodies along directions in which the scene does not repeat does not count.
   SceneRayHit ray_cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                        double t_max = std::numeric_limits<double>::infinity()) const;
 

@@ -135,6 +135,15 @@ void visit_part(const ScaledRay& ray, const Part& part, const scene::BroadPhase&
   }
 }
 
+/// Of a periodic scene; rounding of origins that are further away spreads a ray over many images.
+void check_near(const Vector3d& origin, const scene::Images& images) {
+  constexpr double kFurthest = 1e9;
+  if (origin.cwiseAbs().maxCoeff() <= kFurthest * images.shortest()) return;
+  kernel::refuse(
+      "Scene::ray_cast: the origin is more than 1e9 times the shortest lattice vector away from that of the scene; "
+      "accepted: nearer ones");
+}
+
 void check(const Vector3d& origin, const Vector3d& direction, double t_max) {
   if (!origin.allFinite() || !direction.allFinite()) kernel::refuse("Scene::ray_cast: a number is not finite");
   if (!(direction.cwiseAbs().maxCoeff() > 0)) kernel::refuse("Scene::ray_cast: the direction is zero");
@@ -168,6 +177,7 @@ SceneRayHit Scene::ray_cast(const Vector3d& origin, const Vector3d& direction, d
   if (!images.periodic()) {
     visit_part(ray, all, broad, images, best, visit);
   } else if (!bounds.empty()) {
+    check_near(origin, images);
     double visited = 0;
     in_parts(ray, clipped(ray, bounds, images, all), images, t_max, [&](const Part& part) {
       if (!(part.first <= ray.scaled(best.limit()))) return false;

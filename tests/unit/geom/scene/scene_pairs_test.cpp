@@ -355,6 +355,7 @@ TEST(Scene, RefusesWhatItCannotDo) {
   EXPECT_THAT(message([&] { (void)scene.distance(a, a); }), HasSubstr("both handles are 0"));
   EXPECT_THAT(message([&] { (void)scene.ray_cast({0, 0, 0}, {0, 0, 0}, 1); }), HasSubstr("direction is zero"));
   EXPECT_THAT(message([&] { (void)scene.ray_cast({0, 0, 0}, {1, 0, 0}); }), HasSubstr("periodic"));
+  EXPECT_THAT(message([&] { (void)scene.ray_cast({0, 2e17, 0}, {1, 0, 0}, 9); }), HasSubstr("origin is more than"));
   EXPECT_THAT(message([&] { scene.pairs_within(1e9, pairs); }), HasSubstr("1e8 lattice vectors"));
   std::vector<geom::SceneImage> found;
   EXPECT_THAT(message([&] {
