@@ -56,7 +56,10 @@ nlohmann::json parse_json(std::string_view text) {
 }
 
 std::string JsonMember::path_of(std::string_view key) const {
-  return name.empty() ? std::string(key) : fmt::format("{}.{}", name, key);
+  std::string path;
+  path.reserve(name.size() + 1 + key.size());
+  if (!name.empty()) path.append(name).append(1, '.');
+  return path.append(key);
 }
 
 JsonMember JsonMember::at(const char* key, std::string_view accepted) const {
@@ -65,13 +68,13 @@ JsonMember JsonMember::at(const char* key, std::string_view accepted) const {
 }
 
 void JsonMember::allow(std::span<const std::string_view> keys) const {
-  const std::string accepted = fmt::format("{}", fmt::join(keys, ", "));
-  if (!json->is_object()) throw bad(fmt::format("an object with {}", accepted));
+  const auto accepted = [&] { return fmt::format("{}", fmt::join(keys, ", ")); };
+  if (!json->is_object()) throw bad(fmt::format("an object with {}", accepted()));
   for (const auto& member : json->items()) {
     if (std::find(keys.begin(), keys.end(), member.key()) != keys.end()) continue;
     const std::optional<std::string> nearest = nearest_name(member.key(), keys);
     throw InputError(fmt::format("unknown key {}{}; accepted: {}", one_line(path_of(member.key()), kShownLength),
-                                 nearest ? fmt::format(", did you mean {}?", path_of(*nearest)) : "", accepted));
+                                 nearest ? fmt::format(", did you mean {}?", path_of(*nearest)) : "", accepted()));
   }
 }
 

@@ -191,7 +191,8 @@ geom::Shape read_shape(const JsonMember& shape, ShapeKind kind) {
 
 geom::Shape read_shape(const JsonMember& shape, const char* also) {
   if (!shape.json->is_object()) throw shape.bad("{\"kind\":\"ellipsoid\",\"semi_axes\":[a,b,c]}");
-  const JsonMember kind = shape.at("kind", kind_names(also));
+  if (!shape.has("kind")) (void)shape.at("kind", kind_names(also));  // says what is accepted
+  const JsonMember kind = shape.at("kind", "");
   const auto* found = std::find_if(std::begin(kJsonKinds), std::end(kJsonKinds), [&](const JsonKind& known) {
     return kind.json->is_string() && kind.json->get_ref<const std::string&>() == known.name;
   });
