@@ -23,6 +23,7 @@ hardbody_test(finder_unit_test unit
   unit/ed/vectors/overlapping_envelopes_test.cpp
   unit/ed/vectors/displacements_test.cpp
   unit/ed/vectors/products_test.cpp
+  unit/ed/bodies/rotations_test.cpp
   unit/ed/motion/motion_test.cpp
   unit/ed/neighbours/lists_test.cpp
   unit/ed/base/random_test.cpp

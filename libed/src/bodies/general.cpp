@@ -85,20 +85,22 @@ TurnedAngles GeneralBodies::turned_at(int i, double t) const {
   return turned;
 }
 
-void GeneralBodies::sample(int i, double t, Snapshot& snapshot) const {
-  const TurnedAngles turned = turned_at(i, t);
-  const GeneralKind& kind = kind_of(i);
-  const RigidMotion& m = motions_[at(i)];
-  const TopState top = m.top.at(t - m.time);
-  snapshot.axis[at(i)] = top.R.col(kind.axis);
-  snapshot.rotation[at(i)] = top.R;
-  snapshot.phi_lab[at(i)] = turned.world;
-  snapshot.phi_body[at(i)] = turned.body;
-  snapshot.velocity[at(i)] = m.velocity;
-  snapshot.angular_velocity[at(i)] = top.omega;
-  if (kind.symmetry_axis < 0) return;
-  const Vector3d u = top.R.col(kind.symmetry_axis);
-  snapshot.angular_velocity[at(i)] -= top.omega.dot(u) * u;
+void GeneralBodies::sample(double t, Snapshot& snapshot) const {
+  for (int i = 0; i < number(); ++i) {
+    const TurnedAngles turned = turned_at(i, t);
+    const GeneralKind& kind = kind_of(i);
+    const RigidMotion& m = motions_[at(i)];
+    const TopState top = m.top.at(t - m.time);
+    snapshot.axis[at(i)] = top.R.col(kind.axis);
+    snapshot.rotation[at(i)] = top.R;
+    snapshot.phi_lab[at(i)] = turned.world;
+    snapshot.phi_body[at(i)] = turned.body;
+    snapshot.velocity[at(i)] = m.velocity;
+    snapshot.angular_velocity[at(i)] = top.omega;
+    if (kind.symmetry_axis < 0) continue;
+    const Vector3d u = top.R.col(kind.symmetry_axis);
+    snapshot.angular_velocity[at(i)] -= top.omega.dot(u) * u;
+  }
 }
 
 void GeneralBodies::scale_positions(double factor, double now) {

@@ -72,8 +72,8 @@ class GeneralBodies {
   double angular_speed_bound(int i) const { return motions_[at(i)].top.max_omega(); }
   Motion motion(int i, double t) const;
   static constexpr bool kSamplesRotations = true;  ///< whether sample() sets Snapshot::rotation
-  /// Sets the numbers of body i in a Snapshot, without its position.
-  void sample(int i, double t, Snapshot& snapshot) const;
+  /// Sets the numbers of all bodies in a Snapshot, without their positions.
+  void sample(double t, Snapshot& snapshot) const;
   /// Returns the time at which the flight of body i has begun.
   double flight_start(int i) const { return motions_[at(i)].time; }
 

@@ -1,5 +1,6 @@
 #include "bodies/uniaxial.h"
 
+#include "bodies/rotations.h"
 #include "contact/rods/gap.h"
 #include "contact/rods/spheroid_gap.h"
 #include "contact/sphere_contact.h"
@@ -22,6 +23,32 @@ using Eigen::Vector3d;
 using geom::kernel::evaluate_uniaxial;
 using geom::kernel::support_point;
 using geom::kernel::UniaxialEvaluation;
+
+template <int kNumber>
+void set_column(RotationRows::Row* rows, int lane, const Eigen::Matrix<double, kNumber, 1>& v) {
+  for (int k = 0; k < kNumber; ++k) rows[k][lane] = v[k];
+}
+
+Vector3d column(const RotationRows::Row* rows, int lane) {
+  return {rows[0][lane], rows[1][lane], rows[2][lane]};
+}
+
+void set_column(RotationRows& rows, int lane, double t, const AxisMotion& motion, const BodyFrame& frame) {
+  rows.dt[lane] = t - motion.time;
+  rows.rate[lane] = motion.rate;
+  set_column(rows.e0, lane, motion.e0);
+  set_column(rows.e1, lane, motion.e1);
+  set_column(rows.e2, lane, motion.e2);
+  set_column(rows.momentum_dir, lane, frame.momentum_dir);
+  set_column(rows.x_axis, lane, frame.x_axis);
+  set_column(rows.phi_lab, lane, frame.phi_lab);
+  set_column(rows.phi_body, lane, frame.phi_body);
+}
+
+/// Returns whether the kernel has the rotation.
+bool is_set(const RotationRows& rows, int lane) {
+  return rows.dt[lane] != 0 && std::abs(rows.rate[lane] * rows.dt[lane]) <= kLargestAngle;
+}
 
 UniaxialKind rod_kind(const Species& species) {
   const auto* const capsule = std::get_if<geom::Capsule>(&species.shape);
@@ -144,6 +171,34 @@ void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
   snapshot.phi_body[at(i)] = {rotation.phi_body.x(), rotation.phi_body.y(), 0};
   snapshot.velocity[at(i)] = motion.velocity;
   snapshot.angular_velocity[at(i)] = rotation.omega;
+}
+
+void UniaxialBodies::sample(double t, Snapshot& snapshot) const {
+  if (spins_) {
+    for (int i = 0; i < number(); ++i) sample(i, t, snapshot);
+    return;
+  }
+  RotationKernel& kernel = *find_rotation_kernel();
+  RotationRows rows{};
+  for (int begin = 0; begin < number(); begin += kRotationsAtATime) {
+    const int bodies = std::min(kRotationsAtATime, number() - begin);
+    for (int lane = 0; lane < bodies; ++lane) {
+      set_column(rows, lane, t, rotation_of(begin + lane), frames_[at(begin + lane)]);
+    }
+    kernel(rows);
+    for (int lane = 0; lane < bodies; ++lane) {
+      const int i = begin + lane;
+      if (!is_set(rows, lane)) {
+        sample(i, t, snapshot);
+        continue;
+      }
+      snapshot.axis[at(i)] = column(rows.axis, lane);
+      snapshot.phi_lab[at(i)] = column(rows.phi_lab, lane);
+      snapshot.phi_body[at(i)] = {rows.phi_body[0][lane], rows.phi_body[1][lane], 0};
+      snapshot.velocity[at(i)] = velocity(i);
+      snapshot.angular_velocity[at(i)] = column(rows.omega, lane);
+    }
+  }
 }
 
 void UniaxialBodies::rotate_sphere(int i, double t) {

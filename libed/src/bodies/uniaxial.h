@@ -89,8 +89,8 @@ class UniaxialBodies {
   double angular_speed_bound(int i) const { return entries_[at(i)].motion.rate; }
   Motion motion(int i, double t) const;
   static constexpr bool kSamplesRotations = false;  ///< whether sample() sets Snapshot::rotation
-  /// Sets orientation and integrals of the angular velocity of body i in a Snapshot, without its position.
-  void sample(int i, double t, Snapshot& snapshot) const;
+  /// Sets orientations, integrals of the angular velocities and velocities in a Snapshot, without positions.
+  void sample(double t, Snapshot& snapshot) const;
   /// Returns the time at which the flight of body i has begun.
   double flight_start(int i) const { return entries_[at(i)].motion.time; }
 
@@ -179,6 +179,8 @@ class UniaxialBodies {
     if (kind_of(i).sphere) m.time = 0;
     return m;
   }
+  /// Does what sample() does for one body.
+  void sample(int i, double t, Snapshot& snapshot) const;
   /// Turns a sphere as it turns until the clock shows t.
   void rotate_sphere(int i, double t);
 

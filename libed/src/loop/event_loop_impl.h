@@ -86,8 +86,8 @@ void EventLoop<Bodies, Law, Added>::sample(Snapshot& snapshot) const {
   snapshot.angular_velocity.resize(at(number()));
   for (int i = 0; i < number(); ++i) {
     snapshot.position[at(i)] = parts_.box.unwrapped(i, parts_.bodies.position_at(i, parts_.now()));
-    parts_.bodies.sample(i, parts_.now(), snapshot);
   }
+  parts_.bodies.sample(parts_.now(), snapshot);
 }
 
 template <class Bodies, CollisionLaw Law, class Added>
