@@ -135,7 +135,7 @@ void visit_part(const ScaledRay& ray, const Part& part, const scene::BroadPhase&
   }
 }
 
-/// Of a periodic scene; rounding of origins that are further away spreads a ray over many images.
+/// Refuses origins in a periodic scene that are so far away that rounding spreads a ray over many images.
 void check_near(const Vector3d& origin, const scene::Images& images) {
   constexpr double kFurthest = 1e9;
   if (origin.cwiseAbs().maxCoeff() <= kFurthest * images.shortest()) return;
