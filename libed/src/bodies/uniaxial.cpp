@@ -33,9 +33,13 @@ Vector3d column(const RotationRows::Row* rows, int lane) {
   return {rows[0][lane], rows[1][lane], rows[2][lane]};
 }
 
-void set_column(RotationRows& rows, int lane, double t, const AxisMotion& motion, const BodyFrame& frame) {
-  rows.dt[lane] = t - motion.time;
+void set_column(RotationRows& rows, int lane, double dt, const UniaxialInertia& inertia, const AxisMotion& motion,
+                const BodyFrame& frame) {
+  rows.dt[lane] = dt;
   rows.rate[lane] = motion.rate;
+  rows.perpendicular[lane] = inertia.perpendicular;
+  rows.axial[lane] = inertia.axial;
+  rows.spin[lane] = frame.spin;
   set_column(rows.e0, lane, motion.e0);
   set_column(rows.e1, lane, motion.e1);
   set_column(rows.e2, lane, motion.e2);
@@ -47,7 +51,8 @@ void set_column(RotationRows& rows, int lane, double t, const AxisMotion& motion
 
 /// Returns whether the kernel has the rotation.
 bool is_set(const RotationRows& rows, int lane) {
-  return rows.dt[lane] != 0 && std::abs(rows.rate[lane] * rows.dt[lane]) <= kLargestAngle;
+  const double rate = std::abs(rows.rate[lane]) + std::abs(rows.spin[lane]);
+  return rows.dt[lane] != 0 && rate * std::abs(rows.dt[lane]) <= kLargestAngle;
 }
 
 UniaxialKind rod_kind(const Species& species) {
@@ -174,21 +179,18 @@ void UniaxialBodies::sample(int i, double t, Snapshot& snapshot) const {
 }
 
 void UniaxialBodies::sample(double t, Snapshot& snapshot) const {
-  if (spins_) {
-    for (int i = 0; i < number(); ++i) sample(i, t, snapshot);
-    return;
-  }
   RotationKernel& kernel = *find_rotation_kernel();
   RotationRows rows{};
   for (int begin = 0; begin < number(); begin += kRotationsAtATime) {
     const int bodies = std::min(kRotationsAtATime, number() - begin);
     for (int lane = 0; lane < bodies; ++lane) {
-      set_column(rows, lane, t, rotation_of(begin + lane), frames_[at(begin + lane)]);
+      const AxisMotion motion = rotation_of(begin + lane);
+      set_column(rows, lane, t - motion.time, kind_of(begin + lane).inertia, motion, frames_[at(begin + lane)]);
     }
-    kernel(rows);
+    kernel(rows, spins_);
     for (int lane = 0; lane < bodies; ++lane) {
       const int i = begin + lane;
-      if (!is_set(rows, lane)) {
+      if (!is_set(rows, lane) || kind_of(i).inertia.spins != spins_) {
         sample(i, t, snapshot);
         continue;
       }

@@ -25,20 +25,25 @@ struct RotationsOfTest {
   RotationRows rows{};
   std::vector<ed::internal::SampledRotation> wanted;
 
-  explicit RotationsOfTest(ed::Random& random) {
-    const ed::internal::UniaxialInertia inertia{1, 0.7, 0.4, false};
+  RotationsOfTest(ed::Random& random, bool spins) {
+    const ed::internal::UniaxialInertia inertia{1, 0.7, 0.4, spins};
     for (int lane = 0; lane < kRotationsAtATime; ++lane) {
       const Vector3d u = random.direction();
       ed::internal::AxisMotion motion{};
       ed::internal::BodyFrame frame;
       frame.x_axis = u.unitOrthogonal();
       const double rate = lane == 0 ? 0 : std::pow(10.0, random.normal());
+      // One body is at rest in all respects, and one hardly turns about its axis, seen from the momentum.
+      frame.spin = !spins || lane == 0 ? 0 : lane == 1 ? 1e-9 : random.normal();
       ed::internal::set_rotation(inertia, u, rate * random.direction().cross(u), motion, frame);
       ed::internal::advance(inertia, 0.1, motion, frame);  // rounding and integrals that are not zero
       const double t = 0.1 + 5 * random.uniform();
       wanted.push_back(ed::internal::sampled(inertia, t, motion, frame));
       rows.dt[lane] = t - motion.time;
       rows.rate[lane] = motion.rate;
+      rows.perpendicular[lane] = inertia.perpendicular;
+      rows.axial[lane] = inertia.axial;
+      rows.spin[lane] = frame.spin;
       for (int k = 0; k < 3; ++k) {
         rows.e0[k][lane] = motion.e0[k];
         rows.e1[k][lane] = motion.e1[k];
@@ -52,9 +57,9 @@ struct RotationsOfTest {
   }
 };
 
-void expect_the_bits_of_each_body(RotationKernel& kernel, const RotationsOfTest& bodies) {
+void expect_the_bits_of_each_body(RotationKernel& kernel, const RotationsOfTest& bodies, bool spins) {
   RotationRows found = bodies.rows;
-  kernel(found);
+  kernel(found, spins);
   for (int lane = 0; lane < kRotationsAtATime; ++lane) {
     const ed::internal::SampledRotation& wanted = bodies.wanted[static_cast<std::size_t>(lane)];
     for (int k = 0; k < 3; ++k) {
@@ -66,22 +71,27 @@ void expect_the_bits_of_each_body(RotationKernel& kernel, const RotationsOfTest&
   }
 }
 
-TEST(Rotations, HaveTheBitsOfEachBodyWithEveryInstructionSet) {
+class Rotations : public testing::TestWithParam<bool> {};
+
+TEST_P(Rotations, HaveTheBitsOfEachBodyWithEveryInstructionSet) {
+  const bool spins = GetParam();
   ed::Random random(6);
   for (int trial = 0; trial < 100; ++trial) {
-    const RotationsOfTest bodies(random);
-    expect_the_bits_of_each_body(*ed::internal::rotation_kernel_portable(), bodies);
+    const RotationsOfTest bodies(random, spins);
+    expect_the_bits_of_each_body(*ed::internal::rotation_kernel_portable(), bodies, spins);
 #if defined(__x86_64__)
     for (const auto& [set, kernel] :
          {std::pair{geom::InstructionSet::avx2, ed::internal::rotation_kernel_avx2()},
           std::pair{geom::InstructionSet::avx512, ed::internal::rotation_kernel_avx512()}}) {
       if (!geom::is_available(set)) continue;
       SCOPED_TRACE(geom::to_string(set));
-      expect_the_bits_of_each_body(*kernel, bodies);
+      expect_the_bits_of_each_body(*kernel, bodies, spins);
     }
 #endif
-    expect_the_bits_of_each_body(*ed::internal::find_rotation_kernel(), bodies);
+    expect_the_bits_of_each_body(*ed::internal::find_rotation_kernel(), bodies, spins);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Spin, Rotations, testing::Bool());
 
 }  // namespace
