@@ -20,6 +20,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/cores/polyhedron_test.cpp
   unit/geom/contact_elements_test.cpp
   unit/geom/derivatives/derivatives_test.cpp
+  unit/geom/derivatives/flat_faces_test.cpp
   unit/geom/distance_test.cpp
   unit/geom/dual_newton_test.cpp
   unit/geom/ellipsoid_pairs_test.cpp
@@ -40,6 +41,7 @@ hardbody_test(geom_unit_test unit
   unit/geom/patch/contact_patch_limits_test.cpp
   unit/geom/patch/contact_patch_test.cpp
   unit/geom/patch/contact_patch_thin_test.cpp
+  unit/geom/scene/scene_far_test.cpp
   unit/geom/scene/scene_queries_test.cpp
   unit/geom/scene/scene_pairs_test.cpp
   unit/geom/solids_test.cpp

@@ -158,9 +158,9 @@ GEOM_EXPORT ContactPatch contact_patch(const PatchBody& a, const PatchBody& b, c
 /// resting bodies do not rock.
 ///
 /// Polygons narrower than 1e-9 of the extent of what both bodies' shadows have in common, for curved surfaces than
-/// three times the tolerance of their length, are segments; segments shorter than 1e-9 of it, 1e-6 for curved ones,
-/// points. Empty if `at` has no answer. Throws std::invalid_argument if an option is out of range, the normal of an
-/// answer is not of length 1, or that of a half-space points along its plane.
+/// three times the tolerance of their length (0.1 at most), are segments; segments shorter than 1e-9 of it, 1e-6 for
+/// curved ones, points. Empty if `at` has no answer. Throws std::invalid_argument if an option is out of range, the
+/// normal of an answer is not of length 1, or that of a half-space points along its plane.
 template <class A, class B>
 ContactPatch contact_patch(const A& a, const Pose& X_WA, const B& b, const Pose& X_WB, const DistanceResult& at,
                            const PatchOptions& options) {

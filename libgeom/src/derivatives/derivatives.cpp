@@ -194,6 +194,46 @@ DistanceDerivatives without_features(const ContactBody& a, const ContactBody& b,
 
 }  // namespace
 
+namespace {
+
+/// Returns the Hessian of a body at a normal that is turned by `by`.
+Matrix3d hessian_beside(const ContactBody& body, const LocalContact& at, const Vector3d& n, const Vector3d& by) {
+  if (body.core || body.plane != nullptr) return at.H;
+  const Matrix3d& R = body.X_WS.rotation();
+  const Vector3d beside = R.transpose() * (n + by), here = R.transpose() * n;
+  return at.H + R * (body.hessian(body.shape, beside) - body.hessian(body.shape, here)) * R.transpose();
+}
+
+/// Returns whether second derivatives are nearly those at normals beside this one. Others are infinite: on a flat face
+/// of a superellipsoid the Hessian of the support function is that of a point nearby.
+bool are_settled(const ContactBody& a, const ContactBody& b, const StationaryPair& pair,
+                 const DistanceDerivatives& out) {
+  constexpr double kTurn = 1e-9;
+  constexpr double kMostChange = 1e-3;
+  const Eigen::Matrix<double, 3, 2> T = pair.tangent();
+  const auto nearly = [](const auto& moved, const auto& here) {
+    return (moved - here).norm() <= kMostChange * here.norm();
+  };
+  for (const Vector3d& way : {pair.e, pair.f}) {
+    const Matrix3d H_a = hessian_beside(a, pair.a, pair.n, kTurn * way);
+    const Matrix3d H_b = hessian_beside(b, pair.b, -pair.n, kTurn * way);
+    if (nearly(H_a, pair.a.H) && nearly(H_b, pair.b.H)) continue;
+    StationaryPair beside = pair;
+    beside.H_a = T.transpose() * H_a * T;
+    beside.H_b = T.transpose() * H_b * T;
+    beside.W = beside.H_a + beside.H_b + pair.distance * Eigen::Matrix2d::Identity();
+    DistanceDerivatives moved;
+    SecondDerivatives(beside).write(moved);
+    if (!nearly(moved.hessian, out.hessian) || !nearly(moved.point_a, out.point_a) ||
+        !nearly(moved.point_b, out.point_b)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
 RivalTrial rival_trial(const ContactBody& a, const ContactBody& b, const DistanceResult& at) {
   const double size = size_of(a, b);
   RivalTrial trial;
@@ -235,7 +275,7 @@ DistanceDerivatives contact_derivatives(const ContactBody& a, const ContactBody&
   set_gradient(out, pair->n, pair->a.x, pair->b.x);
   SecondDerivatives(*pair).write(out);
   out.status = DerivativeStatus::twice;
-  if (out.hessian.allFinite() && pair->curved) return out;
+  if (out.hessian.allFinite() && pair->curved && are_settled(a, b, *pair, out)) return out;
   out.status = DerivativeStatus::once;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   out.hessian.setConstant(nan);

@@ -28,6 +28,8 @@ constexpr double kPlaceRounding = 1e-14;
 /// Widths and lengths, of the extent of the shadows' common part, below which polygons are segments and segments
 /// points.
 constexpr double kNarrowExact = 1e-9, kShortSmooth = 1e-6;
+/// Largest width, of the length, of segments of curved surfaces.
+constexpr double kMostNarrow = 0.1;
 /// Distance, of that extent, up to which corners count as one, and are moved off the walls of polytopes.
 constexpr double kSameCorner = 1e-6;
 /// Share of the patch's width up to which they are moved.
@@ -88,7 +90,9 @@ class Maker {
     if (length <= (outline_.is_exact() ? narrow : std::max(kShortSmooth * outline_.extent(), narrow))) {
       patch_.kind = PatchKind::point;
       add(middle_, 0);
-    } else if (across <= (outline_.is_exact() ? narrow : std::max(3 * options_.tolerance * length, narrow))) {
+    } else if (across <= (outline_.is_exact()
+                              ? narrow
+                              : std::max(std::min(3 * options_.tolerance, kMostNarrow) * length, narrow))) {
       patch_.kind = PatchKind::segment;
       reach_ = std::min(kSameCorner * outline_.extent(), kShareMoved * length);
       add_ends(polygon, i, j, way / length);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -77,7 +78,11 @@ DistanceResult distance(const AnyBody& a, const Pose& X_WA, const AnyBody& b, co
 
 double lower_bound(const AnyBody& a, const Pose& X_WA, const AnyBody& b, const Pose& X_WB) {
   const Vector3d n = X_WB.position() - X_WA.position();
-  return with_shapes(a, b, [&](const auto& s, const auto& t) { return distance_lower_bound(s, X_WA, t, X_WB, n); });
+  // Distances of bodies at large coordinates may be this much below the bound.
+  const double size = std::max(X_WA.position().cwiseAbs().maxCoeff(), X_WB.position().cwiseAbs().maxCoeff());
+  const double rounding = 16 * std::numeric_limits<double>::epsilon() * size;
+  return with_shapes(
+      a, b, [&](const auto& s, const auto& t) { return distance_lower_bound(s, X_WA, t, X_WB, n) - rounding; });
 }
 
 Answer overlap(const AnyBody& a, const Pose& X_WA, const AnyBody& b, const Pose& X_WB) {

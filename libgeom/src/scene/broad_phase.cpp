@@ -109,7 +109,9 @@ void BroadPhase::bring_up_to_date() const {
   for (std::size_t k = 0; k < boxes_.size(); ++k) {
     if (!boxes_[k].empty()) items.push_back(static_cast<std::int32_t>(k));
   }
-  tree_.build(std::move(items), boxes_);
+  BoxTree built;  // of its own, so that the old tree stays if there is no memory
+  built.build(std::move(items), boxes_);
+  tree_ = std::move(built);
   built_cost_ = tree_.cost();
   loose_.clear();
 }

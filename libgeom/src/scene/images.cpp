@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <iomanip>
 #include <sstream>
@@ -71,16 +72,38 @@ Images::Images(const Lattice& lattice) {
   }
 }
 
+double Images::open_gap(const Box3& a, const Box3& b) const {
+  const Vector3d way = b.centre() - a.centre();
+  const Vector3d half = 0.5 * ((a.high - a.low) + (b.high - b.low));
+  const double rounding = kOpenRounding * (way.norm() + half.norm());
+  double square = 0;
+  for (const Vector3d& direction : open()) {
+    const double gap = std::abs(direction.dot(way)) - direction.cwiseAbs().dot(half) - rounding;
+    if (gap > 0) square += gap * gap;
+  }
+  return std::sqrt(square);
+}
+
 Images::Range Images::range(const Box3& moved, const Box3& other, double reach) const {
   // Lattice vectors in [low, high] bring the box within reach.
   Range near;
   near.low = (other.low - moved.high).array() - reach;
   near.high = (other.high - moved.low).array() + reach;
   const Vector3d middle = inverse_ * (0.5 * (near.low + near.high));
-  const Vector3d spread = inverse_.cwiseAbs() * (0.5 * (near.high - near.low));
+  // Of the reach, what is left across the open directions leads along the lattice.
+  const double gap = open_gap(moved, other);
+  if (gap > reach) {
+    near.count = 0;
+    near.first.setOnes();
+    near.last.setZero();
+    return near;
+  }
+  const double along = std::sqrt(reach - gap) * std::sqrt(reach + gap);
+  const Vector3d widths = (moved.high - moved.low) + (other.high - other.low);
+  const Vector3d spread = inverse_.cwiseAbs() * (0.5 * widths) + along * inverse_.rowwise().norm();
   constexpr double kRounding = 1e-9;
   for (int k = 0; k < 3; ++k) {
-    near.first[k] = std::ceil(middle[k] - spread[k] - kRounding);
+    near.first[k] = std::ceil(middle[k] - spread[k] - kRounding) + 0.0;  // without -0
     near.last[k] = std::floor(middle[k] + spread[k] + kRounding);
     near.count *= std::max(0.0, near.last[k] - near.first[k] + 1);
   }

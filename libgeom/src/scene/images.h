@@ -37,6 +37,9 @@ class Images {
   /// Returns unit vectors across all lattice vectors and across each other, accurate to kOpenRounding.
   std::span<const Eigen::Vector3d> open() const { return std::span(open_).first(open_count_); }
 
+  /// Returns a lower bound of the distance of two boxes, wherever lattice vectors move them: that across the lattice.
+  double open_gap(const Box3& a, const Box3& b) const;
+
   double shortest() const { return shortest_; }  ///< smallest length of a lattice vector; infinite without any
   double longest() const { return longest_; }    ///< largest length of a lattice vector
 
@@ -48,8 +51,8 @@ class Images {
   /// Throws std::invalid_argument for more than 1e8 cells, NaN included.
   static void check_count(double count);
 
-  /// Calls visit(cell) for cells such that the box moved there may be within `reach` of the other one along every axis.
-  /// Open space has one cell. Periodic: throws std::invalid_argument for more than 1e8 cells.
+  /// Calls visit(cell) for all cells such that the box moved there is within `reach` of the other one, and for some
+  /// more. Open space has one cell. Periodic: throws std::invalid_argument for more than 1e8 cells.
   /// `visit` returns false to stop. Returns whether it went on to the end.
   template <class Visit>
   bool for_each_near(const Box3& moved, const Box3& other, double reach, const Visit& visit) const;

@@ -53,6 +53,45 @@ void visit_in_order(const scene::BroadPhase& broad, const scene::Images& images,
   });
 }
 
+/// Calls visit(cell) for the images of a box that are no further from `around` than limit(), which visits lower, and
+/// for some more: in shells that grow, up to where the box certainly has an image.
+template <class Limit, class Visit>
+void visit_images(const scene::Images& images, const Box3& box, const Box3& around, const Vector3d& here,
+                  const Limit& limit, const Visit& visit) {
+  // No two points of both are further apart than opposite corners.
+  const Box3 near = box.moved(images.vector(here));
+  const double furthest = (near.high - around.low).cwiseMax(around.high - near.low).norm();
+  const auto most = [&] { return std::max(0.0, std::min(limit(), furthest)); };
+  const double gap = images.open_gap(box, around);
+  double reach = 0, along = images.shortest();
+  do {
+    reach = std::min(most(), std::hypot(gap, along));
+    images.for_each_near(box, around, reach, visit);
+    along *= 2;
+  } while (reach < most());
+}
+
+/// Does what visit_in_order does, body by body: for bodies that are far from each other across the lattice, so that the
+/// box around all of them has too many images.
+template <class Bound, class Result, class Visit>
+void visit_by_body(const scene::BroadPhase& broad, const scene::Images& images, const Box3& around, const Bound& bound,
+                   const Best<Result>& best, const Visit& visit) {
+  const Vector3d here = images.cell(around.centre(), "Scene");
+  broad.in_order(
+      best.limit(), [&](const Box3& box) { return images.open_gap(box, around); },
+      [&](std::int32_t item) {
+        const Box3& box = broad.tight(item);
+        const auto visit_cell = [&](const Vector3d& cell) {
+          if (bound(box.moved(images.vector(cell))) <= best.limit()) visit(item, cell);
+          return true;
+        };
+        visit_cell(here);
+        visit_images(
+            images, box, around, here, [&] { return best.limit(); }, visit_cell);
+        return best.limit();
+      });
+}
+
 /// Searches for the least of values that are not below the signed distance of boxes from `around`. Periodic scenes: in
 /// shells that grow, up to where every body has an image.
 template <class Result, class Visit>
@@ -62,16 +101,24 @@ void search(const scene::BroadPhase& broad, const scene::Images& images, const B
   const Box3 bounds = broad.bounds();
   if (bounds.empty()) return;
   double reach = within;
+  double gap = 0, along = 0;
   if (images.periodic()) {
+    gap = images.open_gap(bounds, around);
+    along = images.shortest();
     const Vector3d here = images.vector(images.cell(around.centre(), "Scene"));
     const double widths = (bounds.high - bounds.low).norm() + (around.high - around.low).norm();
     within = std::min(within, std::max(0.0, bound(bounds.moved(here))) + widths + 3 * images.longest());
-    reach = std::min(within, images.shortest());
+    reach = std::min(within, std::hypot(gap, along));
   }
+  constexpr double kManyImages = 1e4;
   for (;;) {
+    if (images.periodic() && images.count_near(bounds, around, reach) > kManyImages) {
+      return visit_by_body(broad, images, around, bound, best, visit);
+    }
     visit_in_order(broad, images, around, reach, bound, best, visit);
     if (reach >= within || best.limit() <= reach) return;
-    reach = std::min(within, 2 * reach);
+    along *= 2;
+    reach = std::min(within, std::hypot(gap, along));
   }
 }
 
@@ -140,10 +187,9 @@ ScenePair Scene::distance(BodyId i, BodyId j, const DistanceOptions& options) co
   };
   visit(a.cell);
   if (images.periodic()) {
-    // No two points of both are further apart than opposite corners.
-    const Box3 near = box.moved(images.vector(a.cell));
-    const double furthest = (near.high - around.low).cwiseMax(around.high - near.low).norm();
-    images.for_each_near(box, around, std::max(0.0, std::min(best.limit(), furthest)), visit);
+    // Vectors of a sheared lattice may bring an image nearer than that in the same cell.
+    visit_images(
+        images, box, around, a.cell, [&] { return best.limit(); }, visit);
   }
   return {i, j, images.vector(best.answer()->cell), best.answer()->result};
 }
