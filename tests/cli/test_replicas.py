@@ -276,6 +276,7 @@ class Tasks(SweepCase):
         os.kill(int(children[0]), signal.SIGKILL)
         self.wait_for(lambda: self.state("aspect_ratio=0.5")["status"] == "failed", "the failure")
         self.assertEqual(self.state("aspect_ratio=0.5")["message"], "ended by signal 9")
+        self.wait_for(lambda: os.path.exists(self.path("out/aspect_ratio=2/checkpoint.bin")), "the second run's checkpoint")
         process.send_signal(signal.SIGTERM)
         self.assertEqual(process.wait(timeout=60), 143)
         self.assertEqual(self.task("collect").returncode, 75)
