@@ -77,19 +77,22 @@ template <class Bound, class Result, class Visit>
 void visit_by_body(const scene::BroadPhase& broad, const scene::Images& images, const Box3& around, const Bound& bound,
                    const Best<Result>& best, const Visit& visit) {
   const Vector3d here = images.cell(around.centre(), "Scene");
-  broad.in_order(
-      best.limit(), [&](const Box3& box) { return images.open_gap(box, around); },
-      [&](std::int32_t item) {
-        const Box3& box = broad.tight(item);
-        const auto visit_cell = [&](const Vector3d& cell) {
-          if (bound(box.moved(images.vector(cell))) <= best.limit()) visit(item, cell);
-          return true;
-        };
-        visit_cell(here);
-        visit_images(
-            images, box, around, here, [&] { return best.limit(); }, visit_cell);
-        return best.limit();
-      });
+  // Without a gap bodies may overlap by any depth.
+  const auto least = [&](const Box3& box) {
+    const double gap = images.open_gap(box, around);
+    return gap > 0 ? gap : std::numeric_limits<double>::lowest();
+  };
+  broad.in_order(best.limit(), least, [&](std::int32_t item) {
+    const Box3& box = broad.tight(item);
+    const auto visit_cell = [&](const Vector3d& cell) {
+      if (bound(box.moved(images.vector(cell))) <= best.limit()) visit(item, cell);
+      return true;
+    };
+    visit_cell(here);
+    visit_images(
+        images, box, around, here, [&] { return best.limit(); }, visit_cell);
+    return best.limit();
+  });
 }
 
 /// Searches for the least of values that are not below the signed distance of boxes from `around`. Periodic scenes: in

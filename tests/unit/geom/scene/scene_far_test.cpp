@@ -69,6 +69,18 @@ TEST(SceneFar, FindsLayersAndRowsFromFarAway) {
   }
 }
 
+// So many images that bodies are asked one by one.
+TEST(SceneFar, FindsTheDeepestOfBodiesWithManyImages) {
+  Scene scene({.lattice = lattice({0.01, 0, 0}, {0, 0.02, 0}, Vector3d::Zero())});
+  scene.add(geom::Box({4, 4, 0.3}), Pose());
+  const BodyId thick = scene.add(geom::Box({4, 4, 1}), Pose());
+  scene.add(geom::Box({4, 4, 0.5}), Pose());
+  const geom::ScenePoint found = scene.closest_point({0.001, 0.001, 0});
+  ASSERT_TRUE(found.body);
+  EXPECT_EQ(found.body->body, thick);
+  EXPECT_NEAR(found.closest.distance, -1, 1e-12);
+}
+
 TEST(SceneFar, HasTheSameDistancesInAShearedLattice) {
   const Vector3d y(0, 3, 0), z(0, 0, 3);
   for (const double shear : {0.0, 30.0, 300.0, -3000.0}) {
