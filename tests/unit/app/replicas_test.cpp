@@ -1,6 +1,8 @@
 /// Rows of pooled replicas, costs and bundles of runs.
 
 #include "sweep/replicas.h"
+#include "config/config.h"
+#include "io/toml_document.h"
 #include "report/sweep.h"
 #include "sweep/table.h"
 #include "sweep/tasks/bundles.h"
@@ -168,6 +170,36 @@ TEST(TaskCosts, AreThoseOfConfigsWhereNothingIsDone) {
   EXPECT_EQ(costs.error(), hardbody::kCostModelFactor);
   points[1].cost.reset();  // an invalid config
   EXPECT_FALSE(costs.of(1));
+}
+
+/// Expected seconds of 512 bodies with a shape, at a packing fraction.
+double expected_seconds(const std::string& shape, double phi, const std::string& more = "") {
+  const std::string text =
+      fmt::format("[system]\nnumber = 512\npacking_fraction = {}\n[shape]\n{}\n{}", phi, shape, more);
+  return hardbody::cost_by_config(hardbody::read_config(hardbody::read_toml(text, "config", {}))).seconds;
+}
+
+TEST(TaskCosts, FollowRelaxationAndShape) {
+  const std::string precise = "[production]\ntarget_error = 0.03\n";
+  const std::string rods = "kind = \"ellipsoid\"\naspect_ratio = 3.2",
+                    spheres = "kind = \"ellipsoid\"\naspect_ratio = 1";
+  const std::string nearly = "kind = \"ellipsoid\"\naspect_ratio = 1.1", cubes = "kind = \"box\"\nedges = [1, 1, 1]";
+  const std::string fixed = "[equilibration]\ntime = 8\n[production]\ntime = 100\n";
+  // Seconds that such runs took on a Xeon, each alone.
+  EXPECT_NEAR(std::log(expected_seconds(rods, 0.49, precise) / 112), 0, std::log(1.3));
+  EXPECT_NEAR(std::log(expected_seconds("kind = \"ellipsoid\"\naspect_ratio = 2.2", 0.3, precise) / 7.6), 0,
+              std::log(1.3));
+  EXPECT_NEAR(std::log(expected_seconds("kind = \"ellipsoid\"\naspect_ratio = 0.2", 0.3, precise) / 48.5), 0,
+              std::log(1.5));
+  EXPECT_NEAR(std::log(expected_seconds(spheres, 0.275, precise) / 2.35), 0, std::log(1.3));
+  // Rotations of what is nearly a sphere relax slowly, and the more so in a gas; the equilibration says how long a run
+  // is.
+  EXPECT_GT(expected_seconds(nearly, 0.15) / expected_seconds(nearly, 0.15, fixed), 10);
+  EXPECT_LT(expected_seconds(rods, 0.15) / expected_seconds(rods, 0.15, fixed), 4);
+  EXPECT_GT(expected_seconds(cubes, 0.4, fixed) / expected_seconds(spheres, 0.4, fixed), 10);
+  // A coefficient twice as precise needs four times as long.
+  const std::string finer = "[production]\ntarget_error = 0.015\n";
+  EXPECT_NEAR(expected_seconds(rods, 0.3, finer) / expected_seconds(rods, 0.3, precise), 4, 0.4);
 }
 
 TEST(TaskBundles, AreAsLongAsWished) {

@@ -26,23 +26,14 @@ constexpr double kLags = 16;
 constexpr double kNextLook = 1.25;
 
 /// kLagCollisions mean collision intervals; 0 if nothing is known of them.
-double dilute_lag(const Config& config, const Equilibration& equilibration) {
-  const auto collisions = static_cast<double>(equilibration.counters.collisions);
-  return collisions > 0 ? kLagCollisions * equilibration.time * config.number / (2 * collisions) : 0;
+double dilute_lag(const Config& config, double equilibration_time, double collisions) {
+  return collisions > 0 ? kLagCollisions * equilibration_time * config.number / (2 * collisions) : 0;
 }
 
 /// Returns the usual length of a production without a target error.
-double usual_length(const Config& config, const Equilibration& equilibration) {
+double usual_length(const Config& config, double equilibration_time) {
   const double unit = config.time_unit;
-  return std::clamp(kProductionFactor * equilibration.time, kLeastProduction * unit, kMostProduction * unit);
-}
-
-/// Returns the longest lag of a production "auto".
-double lag_of_auto(const Config& config, const Equilibration& equilibration) {
-  const double share = usual_length(config, equilibration) / kLags;
-  // A state that was slow to equilibrate decays as slowly.
-  const double lag = std::min(share, std::max(kLagOfAuto * config.time_unit, equilibration.time));
-  return std::max(lag, std::min(dilute_lag(config, equilibration), kMostProduction * config.time_unit / kLags));
+  return std::clamp(kProductionFactor * equilibration_time, kLeastProduction * unit, kMostProduction * unit);
 }
 
 /// Returns the time of the first test of a target error.
@@ -53,15 +44,10 @@ double first_look(const Production& plan) {
 /// Plans the length of production and what is measured in it.
 Production planned_production(const Config& config, const Equilibration& equilibration) {
   Production plan;
-  const double length = usual_length(config, equilibration);
-  const double most = kMostProduction * config.time_unit;
-  if (config.production_time) {
-    plan.planned = *config.production_time;
-    plan.longest_lag = config.longest_lag.value_or(plan.planned / kLags);
-  } else {
-    plan.longest_lag = config.longest_lag.value_or(lag_of_auto(config, equilibration));
-    plan.planned = config.target_error ? most : std::clamp(kLags * plan.longest_lag, length, most);
-  }
+  const ProductionTimes times =
+      production_times(config, equilibration.time, static_cast<double>(equilibration.counters.collisions));
+  plan.longest_lag = times.longest_lag;
+  plan.planned = config.production_time || !config.target_error ? times.length : kMostProduction * config.time_unit;
   plan.next_look = first_look(plan);
   const double q = equilibration.relaxation.q;
   plan.wave_numbers = config.wave_numbers;
@@ -120,7 +106,7 @@ bool look_at_errors(const Config& config, ProductionRun& run, Log& log) {
   run.result.precise = std::all_of(wanted.begin(), wanted.end(), precise);
   if (run.result.precise) return true;
   const auto hopeless = [&](const ed::Estimate& D) { return !std::isfinite(D.value); };
-  if (run.simulation.time() < usual_length(config, run.before)) return false;
+  if (run.simulation.time() < usual_length(config, run.before.time)) return false;
   if (!std::all_of(wanted.begin(), wanted.end(), [&](const auto& D) { return precise(D) || hopeless(D); }))
     return false;
   log.line(
@@ -130,6 +116,20 @@ bool look_at_errors(const Config& config, ProductionRun& run, Log& log) {
 }
 
 }  // namespace
+
+ProductionTimes production_times(const Config& config, double equilibration_time, double collisions) {
+  if (config.production_time) {
+    return {*config.production_time, config.longest_lag.value_or(*config.production_time / kLags)};
+  }
+  const double unit = config.time_unit;
+  const double usual = usual_length(config, equilibration_time);
+  // A state that was slow to equilibrate decays as slowly.
+  const double lag = std::min(usual / kLags, std::max(kLagOfAuto * unit, equilibration_time));
+  const double dilute = std::min(dilute_lag(config, equilibration_time, collisions), kMostProduction * unit / kLags);
+  const double longest_lag = config.longest_lag.value_or(std::max(lag, dilute));
+  const double length = config.target_error ? kLags * longest_lag : std::max(kLags * longest_lag, usual);
+  return {std::min(length, kMostProduction * unit), longest_lag};
+}
 
 ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log) {

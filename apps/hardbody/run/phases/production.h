@@ -32,6 +32,15 @@ struct ProductionRun {
   std::optional<ed::System> begin{};  ///< state of the first frame of trajectories, until it is taken
 };
 
+/// Length of a production, and the longest lag of what is measured in it.
+struct ProductionTimes {
+  double length;  ///< with a target error: the time of the first test of it
+  double longest_lag;
+};
+
+/// Returns the times of a production after an equilibration with a number of collisions (0: not known).
+ProductionTimes production_times(const Config& config, double equilibration_time, double collisions);
+
 /// Continues from the equilibration's system, which it takes.
 ProductionRun begin_production(const Config& config, Equilibration equilibration, const RunDirectory& directory,
                                Log& log);
