@@ -1,7 +1,7 @@
 #pragma once
 
-/// Replaces every form of operator new in the program, by one that counts its calls. To be included in one source file;
-/// a test checks that calls are counted.
+/// Replaces every form of operator new in the program, by one that counts its calls and can be made to fail. To be
+/// included in one source file; a test checks that calls are counted.
 
 #include <gtest/gtest.h>
 
@@ -13,16 +13,21 @@
 namespace {
 
 std::uint64_t allocations = 0;
+std::uint64_t failing_allocation = 0;  ///< number of the call that throws std::bad_alloc; 0: none
+
+void count_allocation() {
+  if (++allocations == failing_allocation) throw std::bad_alloc();
+}
 
 void* allocate(std::size_t size) {
-  ++allocations;
+  count_allocation();
   void* const memory = std::malloc(size > 0 ? size : 1);
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
 
 void* allocate_aligned(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
+  count_allocation();
   const auto step = static_cast<std::size_t>(alignment);
   void* const memory = std::aligned_alloc(step, (size + step) / step * step);
   if (memory == nullptr) throw std::bad_alloc();

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 
 namespace ed::internal {
@@ -84,12 +85,15 @@ void multiply(const double* a_re, const double* a_im, const double* b_re, const 
 
 /// exp(i k x) of all bodies for k = 0, 1, .. along one axis: real and imaginary parts, those of one k together.
 struct Phases {
-  std::vector<double> re, im;
+  std::unique_ptr<double[]> re, im;
 
   Phases(const std::vector<Vector3d>& positions, BodyRange range, int axis, double unit, int largest) {
     const std::size_t n = range.end - range.begin;
-    re.assign(n * (static_cast<std::size_t>(largest) + 1), 1);
-    im.assign(re.size(), 0);
+    const std::size_t size = n * (static_cast<std::size_t>(largest) + 1);
+    re = std::make_unique_for_overwrite<double[]>(size);
+    im = std::make_unique_for_overwrite<double[]>(size);
+    std::fill_n(re.get(), n, 1.0);
+    std::fill_n(im.get(), n, 0.0);
     if (largest < 1) return;
     for (std::size_t i = 0; i < n; ++i) {
       const SinCos one = sincos(unit * positions[range.begin + i][axis]);
@@ -97,7 +101,7 @@ struct Phases {
       im[n + i] = one.sin;
     }
     // All bodies of one power: a body's powers are far apart in memory.
-    for (std::size_t k = 2 * n; k < re.size(); k += n)
+    for (std::size_t k = 2 * n; k < size; k += n)
       multiply(&re[k - n], &im[k - n], &re[n], &im[n], n, &re[k], &im[k]);
   }
 };

@@ -34,7 +34,7 @@ struct ProductionRun {
 
 /// Length of a production, and the longest lag of what is measured in it.
 struct ProductionTimes {
-  double length;  ///< with a target error: the time of the first test of it
+  double length;  ///< time of the first test of a target error, if there is one
   double longest_lag;
 };
 
