@@ -4,13 +4,13 @@
 set(hardbody_avx2 -mavx2 -mfma -mbmi -mbmi2)
 set(hardbody_avx512 ${hardbody_avx2} -mavx512f -mavx512vl -mavx512dq -mavx512bw)
 
-# hardbody_kernels(<target> <kernel> <chooser>) adds src/<kernel>_portable.cpp and, on x86-64, src/<kernel>_avx2.cpp and
-# src/<kernel>_avx512.cpp, each compiled for its instruction set. src/<chooser>, which asks the processor, learns by
-# HARDBODY_X86_KERNELS that they are there.
+# hardbody_kernels(<target> <kernel>) adds src/<kernel>_portable.cpp and, on x86-64, src/<kernel>_avx2.cpp and
+# src/<kernel>_avx512.cpp, each compiled for its instruction set. Sources that ask the processor for them find them
+# where __x86_64__ is defined.
 #
 # Only headers of Highway are used: linking hwy::hwy, even privately, would make consumers of the static libraries look
 # for it.
-function(hardbody_kernels target kernel chooser)
+function(hardbody_kernels target kernel)
   hardbody_find(hwy libhwy-dev 1.0 CONFIG)
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   target_sources(${target} PRIVATE src/${kernel}_portable.cpp)
@@ -25,5 +25,4 @@ function(hardbody_kernels target kernel chooser)
   target_sources(${target} PRIVATE src/${kernel}_avx2.cpp src/${kernel}_avx512.cpp)
   set_source_files_properties(src/${kernel}_avx2.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx2}")
   set_source_files_properties(src/${kernel}_avx512.cpp PROPERTIES COMPILE_OPTIONS "${hardbody_avx512}")
-  set_source_files_properties(src/${chooser} PROPERTIES COMPILE_DEFINITIONS HARDBODY_X86_KERNELS)
 endfunction()

@@ -14,7 +14,7 @@ namespace {
 /// (`bench_engine --benchmark_filter=vectors/`). On one of AMD's AVX2 makes 3 % fewer.
 InstructionSet best_in_the_loop() {
   const InstructionSet set = geom::batch_instruction_set();
-#ifdef HARDBODY_X86_KERNELS
+#ifdef __x86_64__
   if (set == InstructionSet::avx512 && __builtin_cpu_is("intel")) return InstructionSet::avx2;
 #endif
   return set;
@@ -39,7 +39,7 @@ InstructionSet chosen_in_the_loop(InstructionSet set) {
 }
 
 CellKernel* find_cell_kernel(const std::optional<InstructionSet>& batches) {
-#ifdef HARDBODY_X86_KERNELS
+#ifdef __x86_64__
   const InstructionSet set = batches ? chosen_in_the_loop(*batches) : InstructionSet::portable;
   if (set == InstructionSet::avx2) return cell_kernel_avx2();
   if (set == InstructionSet::avx512) return cell_kernel_avx512();

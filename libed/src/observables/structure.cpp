@@ -101,8 +101,7 @@ struct Phases {
       im[n + i] = one.sin;
     }
     // All bodies of one power: a body's powers are far apart in memory.
-    for (std::size_t k = 2 * n; k < size; k += n)
-      multiply(&re[k - n], &im[k - n], &re[n], &im[n], n, &re[k], &im[k]);
+    for (std::size_t k = 2 * n; k < size; k += n) multiply(&re[k - n], &im[k - n], &re[n], &im[n], n, &re[k], &im[k]);
   }
 };
 

@@ -8,7 +8,7 @@ using geom::InstructionSet;
 
 UniaxialKernels find_uniaxial_kernels(const std::optional<InstructionSet>& batches) {
   if (!batches) return {};
-#ifdef HARDBODY_X86_KERNELS
+#ifdef __x86_64__
   const InstructionSet set = chosen_in_the_loop(*batches);
   if (set == InstructionSet::avx2) return uniaxial_kernels_avx2();
   if (set == InstructionSet::avx512) return uniaxial_kernels_avx512();

@@ -5,7 +5,7 @@
 namespace ed::internal {
 
 ProductKernel* find_product_kernel() {
-#ifdef HARDBODY_X86_KERNELS
+#ifdef __x86_64__
   const geom::InstructionSet set = geom::batch_instruction_set();
   if (set == geom::InstructionSet::avx2) return product_kernel_avx2();
   if (set == geom::InstructionSet::avx512) return product_kernel_avx512();

@@ -28,7 +28,7 @@ using kernel::UniaxialInput;
 
 /// Returns null pointers if the build has no such kernels or the processor cannot run them.
 BatchKernels find_kernels(InstructionSet set) {
-#ifdef HARDBODY_X86_KERNELS
+#ifdef __x86_64__
   const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
                     __builtin_cpu_supports("bmi2");
   if (set == InstructionSet::avx2 && avx2) return kernel::batch_kernels_avx2();

@@ -12,13 +12,13 @@ struct Cost {
   double memory;   ///< bytes
 };
 
-/// Typical factor between the seconds of cost_by_config() and true ones, for times that the config gives, on a
-/// processor like the one that it was measured on (docs/cluster.md).
+/// Typical factor between the seconds of cost_by_config() and true ones, on a processor like the one that it was
+/// measured on (docs/cluster.md).
 inline constexpr double kCostModelFactor = 1.3;
 
 /// Returns the cost of a run: collisions, by a fit of the collision rates of hard ellipsoids, and measurements, each
-/// times its measured duration, and the start. Times "auto" are taken as of a simple fluid: such a run, or one of
-/// other shapes, may take several times as long.
+/// times its measured duration, and the start. Times "auto" are those of fluids of hard ellipsoids: what orders or
+/// becomes a glass, or is of other shapes, may take several times as long.
 Cost cost_by_config(const Config& config);
 
 }  // namespace hardbody
